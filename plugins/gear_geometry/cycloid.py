@@ -3,9 +3,10 @@
 The phase angle psi of a pin is measured from the line of the eccentricity at the centre of the pin circle; pins at
 0 < psi < pi carry. The pitch point P lies on that line at K_1 r_p, and every contact force passes through it. With
 rigid bodies and equal springs at the pins a pin carries in proportion to its arm, F = F_max sin(psi)/S. Sums over the
-pins are taken as integrals, which for ten pins or more differ by less than a tenth of a percent from the mean over a
-pitch. SI throughout, numbers or arrays. References: Malhotra and Parameswaran, Mechanism and Machine Theory 18 (1983);
-the integrals are derived on the theory page of gear geometry.
+pins are taken as integrals. From 20 pins on and up to K_1 = 0.85 they differ by less than a tenth of a percent from the
+mean over a pitch (10 pins: 0.6 %); within a pitch a sum along the eccentricity changes by 2 %, and the pin that carries
+most by 1 %. SI throughout, numbers or arrays. References: Malhotra and Parameswaran, Mechanism and Machine Theory 18
+(1983); the integrals are derived on the theory page of gear geometry.
 """
 
 import numpy as np

@@ -89,9 +89,11 @@ class Pair:
     mesh_stiffness: Float = given(14.0, "N/(mm*um)", symbol="c_gamma", note="mesh stiffness per face width; acts with "
                                   "effects only", source="ISO 6336-1: about 14 for steel", above=0)  # fmt: skip
     # What is asked, and how it is weighed
-    most_pressure: Float = given(4000.0, "MPa", symbol="p_max", note="largest pressure of the threads; beyond it they "
-                                 "are dented by more than 1e-4 of a ball", source="usual for balls, by analogy",
-                                 above=0)  # fmt: skip
+    most_pressure: Float = given(
+        4000.0, "MPa", symbol="p_max", note="largest pressure of the threads, of static load: dents of about 1e-4 of a "
+        "rolling body; the least of 4000 for rollers, 4200 for balls and 4600 for balls in spheres, in ISO 76",
+        source="ISO 76, by analogy; no standard states it for threads", above=0,
+    )  # fmt: skip
     least_contact_ratio: Float = given(1.4, "", symbol="epsilon_min", note="least contact ratio", source=LOST_LIMIT,
                                        at_least=1, at_most=3)  # fmt: skip
     interference_margin: Float = given(0.05, "rad", symbol="G_min", note="least margin against interference of the "
@@ -437,7 +439,7 @@ class Meshing:
                                        method=HERTZ)  # fmt: skip
     margin_pressure: Float = found(
         "", symbol="g_p", note="largest pressure under the one permitted, as a share",
-        source="static limit of balls, by analogy",
+        source="static limit of rolling bearings, ISO 76, by analogy",
         formula="1 - max(thread_pressure_screw, thread_pressure_nut) / most_pressure",
     )  # fmt: skip
     thread_deflection: Float = found("um", symbol="delta_a", note="way of the screw at its loaded end against the held "
@@ -467,6 +469,11 @@ class Meshing:
     dynamic_rating: Float = found(
         "kN", symbol="C_a", note="dynamic axial load rating of threads that share alike", source=ANALOGY, key=True,
         formula="screw_rating * (1 + (screw_rating / nut_rating)**(10 / 3))**(-0.3) * thread_turns**0.7",
+    )  # fmt: skip
+    ball_screw_rating: Float = found(
+        "kN", symbol="C_a,86", note="the same with the exponent 0.86 that ball screws are rated with for their turns: "
+        "how far another reading reaches; the life as its cube", source="quoted of ISO 3408-5, not checked",
+        formula="dynamic_rating * thread_turns**0.16",
     )  # fmt: skip
     acting_load: Float = found("kN", symbol="F", note="magnitude of the axial load, at least 1 mN",
                                method="keeps life and stiffness finite")  # fmt: skip

@@ -218,14 +218,17 @@ def _solve(stiffness: Array, bars: Array, outer: Array, held: int) -> NDArray[np
 # thread of a roller is a ball about its axis, on straight flanks, so that no groove raises the rating
 
 LARGE_BALL = 25.4  # mm; beyond it the rating grows with D^1.4
+OF_ROWS, OF_TURNS = 0.7, 0.86  # exponents of rows: of ISO 281 and the weakest link; of turns of a ball screw, as quoted
 
 
 def life_of(pair: Pair, shared: Sharing) -> dict[str, Float]:
     """Return ratings of one thread of all rollers and of all threads, N, and the life in turns of the screw.
 
     C_s = 88.2 (1 - sin(beta)/3) gamma^0.3 (1 - gamma)^1.39 (1 + gamma)^(-1/3) cos(beta)^0.7 n_r^(2/3) D^1.8 tan(beta)
-    cos(lambda) with N and mm, and n_t^0.7 for the threads as for rows. Source: Lundberg and Palmgren as in ISO 281;
-    with grooves of 0.535 D it gives the factors printed for thrust ball bearings. No standard rates roller screws.
+    cos(lambda) with N and mm, and n_t^0.7 for the threads as for rows: n_t times the load at n_t^(-3/10) of the life's
+    cube root, by the weakest link with slope 10/9. Source: Lundberg and Palmgren as in ISO 281; with grooves of 0.535 D
+    it gives the factors printed for thrust ball bearings. No standard rates roller screws; ball screws are said to be
+    rated with the power 0.86 of their turns.
     """
     beta, gamma = pair.contact_angle, pair.roller_diameter / (pair.screw_diameter + pair.roller_diameter)
     ball = 1e3 * pair.roller_diameter / np.cos(beta)  # mm
@@ -234,7 +237,7 @@ def life_of(pair: Pair, shared: Sharing) -> dict[str, Float]:
     factor = 88.2 * (1.0 - np.sin(beta) / 3.0) * gamma**0.3 * (1.0 - gamma) ** 1.39 / np.cbrt(1.0 + gamma)
     screw = factor * np.cos(beta) ** 0.7 * pair.rollers ** (2.0 / 3.0) * size * np.tan(beta) * lead
     nut = screw * ((1.0 + gamma) / (1.0 - gamma)) ** 1.72
-    turns, load = pair.thread_turns**0.7, np.maximum(np.abs(pair.axial_load), LEAST_LOAD)
+    turns, load = pair.thread_turns**OF_ROWS, np.maximum(np.abs(pair.axial_load), LEAST_LOAD)
 
     def both(of_screw: Float, of_nut: Float) -> Float:
         """Return the rating of all contacts, those of either side loaded so many times as much as alike."""
@@ -242,8 +245,10 @@ def life_of(pair: Pair, shared: Sharing) -> dict[str, Float]:
         rating: Float = turns * weak ** (-1.0 / WEAKEST)
         return rating
 
+    rating = both(1.0, 1.0)
     return {
         "curvature_ratio": gamma, "ball_diameter": 1e-3 * ball, "screw_rating": screw, "nut_rating": nut,
-        "dynamic_rating": both(1.0, 1.0), "acting_load": load,
+        "dynamic_rating": rating, "ball_screw_rating": rating * pair.thread_turns ** (OF_TURNS - OF_ROWS),
+        "acting_load": load,
         "thread_life": 1e6 * (both(shared.life_factor_screw, shared.life_factor_nut) / load) ** 3,
     }  # fmt: skip

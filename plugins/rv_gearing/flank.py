@@ -7,7 +7,8 @@ film thickness of Dowson and Higginson as in ISO/TS 6336-22 (ISO/TR 15144-1); re
 
 Valid for external pairs without interference, contact ratio 1 to 2 (flash) or 2.5 (integral), oil at -10 to 150 degC.
 Left out: the factors of tip relief and of the approach in the flash temperature, and the buttressing of helical teeth.
-The bulk temperature is that of the flash method in all three.
+Flash and integral temperature have bulk temperatures of their own, and so has the film. Friction is that of the
+integral method in all three: speeds of 1 to 50 m/s; slower teeth rub more than it says.
 """
 
 from dataclasses import dataclass
@@ -27,7 +28,8 @@ FRICTION = "ISO/TR 13989-2:2000, equation 1"
 FLASH = "Blok 1937; ISO/TS 6336-20 (ISO/TR 13989-1:2000)"
 INTEGRAL = "ISO/TS 6336-21 (ISO/TR 13989-2:2000)"
 FILM = "Dowson and Higginson; ISO/TS 6336-22 (ISO/TR 15144-1:2014)"
-PATH = "13 points along the path of contact"
+PATH = "15 points along the path of contact"
+QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
 ZERO = 273.15  # K
 HOTTEST = 600.0  # K, up to which oil is followed; flanks above it have scuffed
 
@@ -97,6 +99,17 @@ class FlankState:
         formula="80 + 3.726 * scuffing_stage**2 * oil_factor * (0.23 + 0.3 * welding_factor * (100 / viscosity)**0.02)"
         " - oil_temperature",
     )  # fmt: skip
+    loss_factor: Float = found(
+        "", symbol="H_v", note="power lost over passed power and friction, of teeth that share evenly", source=FILM,
+        formula="pi * (1 / teeth_sun + 1 / teeth_planet) / cos(base_helix_angle) * cases(contact_ratio / 2,"
+        " contact_ratio >= 2, tip_contact_ratio**2 + root_contact_ratio**2 + 1 - contact_ratio)",
+    )  # fmt: skip
+    film_bulk_rise: Float = found(
+        "K", symbol="Delta Theta_M,GF", note="of the gears above the oil, for the film; planets as in the flash method",
+        source=FILM, numeric=True,
+        formula="7400 / 1.2 * lubrication_factor * (1 + planets) / 2 * (tangential_force * pitch_line_velocity / 1000"
+        " * flank_friction * loss_factor / (centre_distance * carrying_width))**0.72",
+    )  # fmt: skip
     film_ratio: Float = found("", symbol="lambda_GF", note="least film of oil over the mean roughness of both flanks",
                               source=FILM, method=PATH)  # fmt: skip
     film_safety: Float = found("", symbol="S_lambda", note="against micropitting", source=FILM,
@@ -151,10 +164,11 @@ def softness_of(stage: Gearing) -> Float:
 
 
 def path_of(stage: Gearing, duty: Duty, mesh: MeshSize, sizes: tuple[GearSize, GearSize], nothing: Float = 0.0) -> Path:
-    """Return 13 points: A, three between A and B, B, one, C, one, D, three between D and E, E; C within B and D.
+    """Return 15 points: five from A to B, five from B over C to D, five from D to E; C within B and D.
 
-    A pair carries its whole load between B and D; outside a third at A and E (more from grade 8 on), in a straight line
-    between. Wide helical teeth, of a total contact ratio above 2, share evenly. ``nothing`` is 0 of the shape (...).
+    A pair carries its whole load from B to D. Outside two pairs share it: a third at A and E (more from grade 8 on),
+    two thirds where the other pair begins or ends, in a straight line between, so that both together carry the whole.
+    Wide helical teeth, of a total contact ratio above 2, share evenly. ``nothing`` is 0 of the shape (...).
     """
     whole = 0.5 * (sizes[0].base_diameter + sizes[1].base_diameter) * np.tan(mesh.working_angle)
     end = 0.5 * sizes[0].base_diameter * np.tan(sizes[0].tip_angle)
@@ -164,20 +178,19 @@ def path_of(stage: Gearing, duty: Duty, mesh: MeshSize, sizes: tuple[GearSize, G
     first, last = np.minimum(*inner), np.maximum(*inner)
     pitch = np.clip(0.5 * sizes[0].base_diameter * np.tan(mesh.working_angle), first, last)
     ends = np.broadcast_arrays(start, first, pitch, last, outer + nothing)
-    parts = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5), (0.0, 0.5), (0.0, 0.25, 0.5, 0.75, 1.0)
-    spans = zip(ends[:-1], ends[1:], parts, strict=True)
-    radius = np.stack([low + part * (high - low) for low, high, own in spans for part in own])
+    spans = zip(ends[:-1], ends[1:], (QUARTERS, (0.0, 0.5), (0.0, 0.5, 1.0), QUARTERS), strict=True)
+    radius = np.stack([low + part * (high - low) for low, high, parts in spans for part in parts])
     least = (max(stage.accuracy_grade, 7) - 2.0) / 15.0
-    rising = least + (1.0 - least) * (radius - start) / np.maximum(first - start, 1e-12)
-    falling = least + (1.0 - least) * (outer - radius) / np.maximum(outer - last, 1e-12)
-    alone = np.clip(np.minimum(rising, falling), least, 1.0)
+    shared = np.minimum(least + np.array(QUARTERS) / 3.0, 1.0)
+    alone = np.concatenate([shared, np.ones(len(QUARTERS)), shared[::-1]])
+    alone = alone.reshape(-1, *(1,) * (radius.ndim - 1))
     even = (mesh.overlap_ratio > 0.0) & (mesh.total_contact_ratio > 2.0)
     speed = TURN * duty.mesh_speed
     other = whole - radius
     return Path(
         radii=(radius, other),
         speeds=(np.asarray(speed * radius), np.asarray(speed * other / mesh.tooth_ratio)),
-        share=np.where(even, 1.0 / mesh.contact_ratio, alone),
+        share=np.where(even, 1.0 / mesh.contact_ratio, alone) + 0.0 * radius,
     )
 
 
@@ -226,6 +239,23 @@ def friction_of(stage: Gearing, load: Float, speed_sum: Float, radius: Float, et
     return either(stage.stated_friction, calculated)
 
 
+def film_bulk(stage: Gearing, duty: Duty, mesh: MeshSize, friction: Float, loss: Float) -> Float:
+    """Return the bulk temperature above the oil for the film, K: an empirical law in kW and mm, for unmodified teeth.
+
+    Equation 84 of ISO/TR 15144-1, of one mesh; (1 + planets)/2 is taken over from the flash method.
+    """
+    lost = duty.tangential_force * duty.pitch_line_velocity / 1e3 * friction * loss
+    area = 1e6 * mesh.centre_distance * duty.carrying_width
+    rise: Float = 7400.0 / 1.2 * stage.lubrication_factor * 0.5 * (1.0 + stage.planets) * (lost / area) ** 0.72
+    return rise
+
+
+def loss_factor(mesh: MeshSize, teeth: tuple[Float, Float], one: Float, two: Float) -> Float:
+    """Return H_v: lost over passed power and friction, from the contact ratios of both addenda."""
+    shared = np.where(mesh.contact_ratio >= 2.0, 0.5 * mesh.contact_ratio, one**2 + two**2 + 1.0 - mesh.contact_ratio)
+    return np.pi * (1.0 / teeth[0] + 1.0 / teeth[1]) / np.cos(mesh.base_helix_angle) * shared
+
+
 def scuffing_rises(stage: Gearing, eta: Float, welding: float) -> tuple[Float, Float]:
     """Return above the oil, K, where flanks scuff by the flash and by the integral method; eta in mPa s."""
     square, celsius = np.square(stage.scuffing_stage), stage.oil_temperature - ZERO
@@ -257,7 +287,9 @@ def flank_state(
     by_tip, approach = mean_by_tip(one, two), np.clip(1.4 - 4.0 / 15.0 * two / one, 0.6, 1.0)
     welding = 1.5 if stage.material == "nitrided" else 1.0
     scuffs = scuffing_rises(stage, eta, welding)
-    at_work = stage.oil_temperature + bulk
+    loss = loss_factor(mesh, (sizes[0].teeth, sizes[1].teeth), one, two)
+    warm = film_bulk(stage, duty, mesh, friction, loss)
+    at_work = stage.oil_temperature + warm
     film = film_over(path, oil, (at_work, at_work + rises), normal * path.share, soft)
     ratio = 12.0 * np.min(film, axis=0) / (stage.sun.flank_roughness + stage.planet.flank_roughness)
     return FlankState(
@@ -267,5 +299,5 @@ def flank_state(
         permitted_contact_rise=scuffs[0] - stage.least_scuffing_distance, welding_factor=0.0 * load + welding,
         tip_contact_ratio=one, root_contact_ratio=two, tip_flash=tip_flash, mean_by_tip=by_tip,
         integral_rise=(0.7 * heated + 1.5) * tip_flash * by_tip / approach, scuffing_integral_rise=scuffs[1],
-        film_ratio=ratio, film_safety=ratio / stage.least_film_ratio,
+        loss_factor=loss, film_bulk_rise=warm, film_ratio=ratio, film_safety=ratio / stage.least_film_ratio,
     )  # fmt: skip

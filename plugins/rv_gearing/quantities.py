@@ -166,9 +166,11 @@ class Gearing:
     least_scuffing_distance: Float = given(50.0, "K", symbol="S_Theta", note="least distance of the contact "
                                            "temperature from that at which it scuffs", source="ISO/TS 6336-20, advice",
                                            at_least=0)  # fmt: skip
-    least_film_ratio: Float = positive(0.09, "", "lambda_GFP", "film over roughness below which micropitting begins; "
-                                       "of the lubricant", "ISO/TR 15144-1, figure A.1 at VG 100 and stage 10, as a "
-                                       "public project reads it")  # fmt: skip
+    least_film_ratio: Float = positive(
+        0.09, "", "lambda_GFP", "film over roughness below which micropitting begins, of the lubricant: 0.055 to 0.57 "
+        "of mineral oils by viscosity and test, this at VG 100 and stage 10",
+        "ISO/TR 15144-1, figure A.1, as a public project reads it",
+    )  # fmt: skip
     mean_stress_sensitivity: Float = given(0.4, "", symbol="M", note="of the root: 0.4 makes the mean stress factor "
                                            "0.7 where the load reverses fully", source=LOST, at_least=0,
                                            at_most=1)  # fmt: skip

@@ -247,8 +247,10 @@ LIMITS = {
     "root_safety_planet": "breakage of the planet",
     "contact_safety_sun": "pitting of the sun",
     "contact_safety_planet": "pitting of the planet",
+    "contact_rise": "scuffing",
 }
-SAFETIES = tuple(LIMITS)
+SAFETIES = tuple(name for name in LIMITS if "safety" in name)
+HEAT = ("contact_rise", "permitted_contact_rise")
 AROUND = {  # unit in SI, and the range as parts of the value
     "load_torque": ("N*m", 0.1, 2.0), "stated_sun_torque": ("N*m", 0.1, 2.0), "power": ("W", 0.1, 2.0),
     "face_width": ("m", 0.5, 2.0), "working_life": ("s", 0.1, 10.0),
@@ -260,21 +262,26 @@ SOUGHT = "bisection on the whole calculation"
 class Rating:
     """What the first stage may be loaded with."""
 
-    torque_capacity: Float = found("N*m", symbol="T_2,max", note="output torque at which the first safety is used up",
-                                   method=SOUGHT, key=True)  # fmt: skip
+    torque_capacity: Float = found(
+        "N*m", symbol="T_2,max", note="output torque at which the first safety or the distance to scuffing is used up",
+        method=SOUGHT, key=True,
+    )  # fmt: skip
     power_capacity: Float = found("kW", symbol="P_max", note="input power at this torque and the speed of the run",
                                   method="in proportion to the torque", key=True)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Capacity:
-    """Find the output torque, and the working time, at which each safety falls to what is asked of it."""
+    """Find the output torque, and the working time, at which each safety falls to what is asked of it.
+
+    Against scuffing the permitted rise of the contact over the one reached counts as a safety, and 1 is asked of it.
+    """
 
     name: str = "capacity"
     gives: Callable[[Any], Any] | None = None
 
     def run(self, bench: "Bench") -> "Reserve":
-        """Bisect on torque and on time for all four limits at once."""
+        """Bisect on torque and on time for all limits at once."""
         stage: Gearing = bench.inputs
         stated = not isnan(float(stage.stated_sun_torque))
         torque = float(bench.answers["output_torque"]) or 1.0
@@ -284,7 +291,7 @@ class Capacity:
         speed, power = float(bench.answers["sun_speed"]), 2.0 * np.pi * float(bench.answers["sun_torque"])
         return Reserve(
             inputs=stage,
-            safeties=np.array([float(bench.answers[name]) for name in SAFETIES]),
+            safeties=_safeties({name: np.full(len(LIMITS), float(bench.answers[name])) for name in (*SAFETIES, *HEAT)}),
             required=_required(stage),
             torque=torque * _used_up(bench, column, start, bench.part(self.name, 0.0, 0.5)),
             life=life * _used_up(bench, "working_life", life, bench.part(self.name, 0.5, 1.0)),
@@ -294,17 +301,23 @@ class Capacity:
 
 def _required(stage: Gearing) -> "Array":
     bending, contact = float(stage.least_bending_safety), float(stage.least_contact_safety)
-    return np.array([bending, bending, contact, contact])
+    return np.array([bending, bending, contact, contact, 1.0])
+
+
+def _safeties(rows: Mapping[str, "Array"]) -> "Array":
+    """The safety of every limit from a row of its own; that against scuffing is what may be over what is."""
+    with np.errstate(divide="ignore"):
+        heat = np.divide(rows[HEAT[1]][-1], rows[HEAT[0]][-1])
+    return np.array([*(rows[name][place] for place, name in enumerate(SAFETIES)), heat])
 
 
 def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int], None]) -> "Array":
     """By what factor on the column each safety falls to what is asked; infinite where never, 0 where always below."""
     required = _required(bench.inputs)
-    low, high = np.full(len(SAFETIES), -np.log(SPAN)), np.full(len(SAFETIES), np.log(SPAN))
+    low, high = np.full(len(LIMITS), -np.log(SPAN)), np.full(len(LIMITS), np.log(SPAN))
 
     def enough(factors: "Array") -> "NDArray[np.bool_]":
-        found = bench.rows({column: start * np.exp(factors)}, len(SAFETIES), *SAFETIES)
-        return np.array([found[name][place] for place, name in enumerate(SAFETIES)]) >= required
+        return _safeties(bench.rows({column: start * np.exp(factors)}, len(LIMITS), *SAFETIES, *HEAT)) >= required
 
     never, always = enough(high), np.logical_not(enough(low))
     for halving in range(HALVINGS):
@@ -317,7 +330,7 @@ def _used_up(bench: "Bench", column: str, start: float, done: Callable[[int, int
 
 @dataclass(frozen=True, kw_only=True)
 class Reserve(Outcome):
-    """By limit (4,): safety, what is asked, and torque (N m) and time (s) at which they meet; infinite where never."""
+    """By limit (5,): safety, what is asked, and torque (N m) and time (s) at which they meet; infinite where never."""
 
     inputs: Gearing
     safeties: "Array"
@@ -329,7 +342,7 @@ class Reserve(Outcome):
     @property
     def governing(self) -> str:
         """The limit that is met first as the torque grows."""
-        return LIMITS[SAFETIES[int(np.argmin(self.torque))]]
+        return LIMITS[tuple(LIMITS)[int(np.argmin(self.torque))]]
 
     def as_json(self) -> Mapping[str, Any]:
         """Return safety, limit, torque and time of every limit; null where it is never met."""
@@ -342,7 +355,7 @@ class Reserve(Outcome):
                     "output_torque": {"value": _finite(self.torque[place]), "unit": "N*m"},
                     "working_life": {"value": _finite(self.life[place] / HOUR), "unit": "h"},
                 }
-                for place, name in enumerate(SAFETIES)
+                for place, name in enumerate(LIMITS)
             },
         }
 
@@ -356,7 +369,7 @@ class Reserve(Outcome):
                 _finite(self.torque[place]) or _beyond(self.torque[place]),
                 _finite(self.life[place] / HOUR) or _beyond(self.life[place]),
             )
-            for place, name in enumerate(SAFETIES)
+            for place, name in enumerate(LIMITS)
         ]
         return [
             Table(

@@ -75,7 +75,8 @@ class SecondStage:
                                  source=BEARING,
                                  formula="either((bearing_rating / equivalent_load)**bearing_exponent, crank_speed"
                                          " * working_life / 1000000)")  # fmt: skip
-    bearing_life: Float = found("h", symbol="L_10h", note="time that nine of ten crank bearings last", source=BEARING,
+    bearing_life: Float = found("h", symbol="L_10h", note="time that nine of ten crank bearings last; where no "
+                                "rating is stated, the working time that is asked for", source=BEARING,
                                 formula="million_turns * 1000000 / crank_speed")  # fmt: skip
 
 

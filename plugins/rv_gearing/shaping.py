@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rv_gearing.groups import Groups, search
 from rv_gearing.quantities import Gearing
-from rv_gearing.rating import SAFETIES
+from rv_gearing.rating import HEAT, SAFETIES
 from truing import Array, Bench, Block, Outcome, Table, TruingError
 
 WIDEST, HALVINGS = 10.0, 15  # times the width of the run, either way; the last step is 0.02 % of the width
@@ -22,7 +22,6 @@ GEARS = ("sun", "planet")
 OF_A_GEAR = ("tip_thickness", "start_curvature", "form_diameter", "base_diameter")
 SHAPE = ("contact_ratio", *(f"{name}_{gear}" for name in OF_A_GEAR for gear in GEARS))
 LEAST_CURVATURE = 1e-6  # of the base diameter: what is left of 0 by rounding
-HEAT = ("contact_rise", "permitted_contact_rise")
 
 
 @dataclass(frozen=True, kw_only=True)

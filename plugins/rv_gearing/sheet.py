@@ -325,8 +325,8 @@ SECTIONS = [
         *FlankState.__dataclass_fields__,
         text="Flanks that slide heat one another; where the contact gets as hot as the lubricant bears in its test, "
         "they weld for a moment and scuff. The flash method takes the hottest point, the integral method a mean of the "
-        "path: two independent readings of one risk. Where the oil film is thin beside the roughness, flanks turn "
-        "grey by micropitting; what the lubricant bears must come from its own test.",
+        "path: two readings of one risk, with one friction. Where the oil film is thin beside the roughness, flanks "
+        "turn grey by micropitting; what the lubricant bears must come from its own test.",
         blocks=heat,
     ),
     Section(

@@ -9,6 +9,7 @@ from math import isfinite
 
 import pytest
 
+from pages import Page
 from rv_gearing.published import EXAMPLE, HANDBOOK, TEXTBOOK
 from truing import Kernel
 from truing.calculation import calculate
@@ -20,7 +21,7 @@ from truing.runs.provenance import provenance_of
 from truing.setup import default_setup
 
 OFFERS = Kernel.installed(strict=True).offers
-PRINTED = {"press_linkage": 34, "roller_screw_shift": 25, "rv_gearing": 51, "harmonic_fractal": 58}
+PRINTED = {"press_linkage": 34, "roller_screw_shift": 25, "rv_gearing": 63, "harmonic_fractal": 58}
 """How many printed numbers each calculation compares."""
 STEP = 0.0025
 """Of the shifts that the reconstruction of the roller screw tried; its ends are up to one step short."""
@@ -55,7 +56,17 @@ def test_what_differs_of_the_gearing() -> None:
     found = rows("rv_gearing")
     forms = {f"Y_Fa of {teeth} teeth" for teeth in (17, 25, 35, 50, 80, 200)}
     differing = {name for name, row in found.items() if not row.matches}
-    assert differing == {*forms, "Y_Sa of 200 teeth", "torque of the catalogue"}
+    films = {f"film permitted at VG {grade}, stage {stage}" for grade in (220, 460) for stage in (5, 10)}
+    films.add("film permitted at VG 100, stage 5")
+    assert differing == {*forms, *films, "Y_Sa of 200 teeth", "torque of the catalogue"}
+    ratios = {
+        stage: [found[f"film permitted at VG {grade}, stage {stage}"].ratio or 0.0 for grade in (32, 100, 220, 460)]
+        for stage in (5, 10)
+    }
+    Page("rv_gearing").says(
+        f"{max(ratios[10]):.2f} to {min(ratios[10]):.2f} of it at stage 10 and {max(ratios[5]):.2f} to "
+        f"{min(ratios[5]):.2f} at stage 5"
+    )
     assert found["torque of the catalogue"].value == pytest.approx(1285.75, abs=0.01)
     assert found["groups in its table, at least"].value == 25  # of at least 22
 

@@ -204,6 +204,9 @@ def test_threads_of_the_page() -> None:
         f"{far.thread_share_nut:.3f}",
         f"The pressure is {1e-6 * FOUND.thread_pressure_screw:.0f} MPa",
         f"gives way by {1e6 * FOUND.thread_deflection:.2f} µm under 10 kN: {1e-6 * FOUND.axial_stiffness:.0f} N/µm",
-        f"Here $K_S$ = {FOUND.life_factor_screw:.3f} and the rating is {1e-3 * FOUND.dynamic_rating:.1f} kN",
+        f"Here $K_S$ = {FOUND.life_factor_screw:.3f} and the rating is {1e-3 * FOUND.dynamic_rating:.1f} kN; with 0.86 "
+        f"it would be {1e-3 * FOUND.ball_screw_rating:.1f} kN, {20**0.16:.2f} times as much, and the life "
+        f"{20**0.48:.1f} times as long",
+        f"permits {100 * (1.05**3 - 1):.0f} % more and 4600 MPa {100 * (1.15**3 - 1):.0f} % more",
         f"A nut 20 µm too large makes {1e6 * large.slip_per_turn:.1f} µm of slip",
     )

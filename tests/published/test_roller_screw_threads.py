@@ -188,6 +188,9 @@ def test_one_thread_more_loaded_shortens_the_life_as_the_weakest_link_does() -> 
 
     alike = brentq(survive, 1e-12, 1e12, args=([np.ones(20), np.ones(20)],), xtol=1e-15, rtol=1e-13)
     uneven = brentq(survive, 1e-12, 1e12, args=([shared.screw, shared.nut],), xtol=1e-15, rtol=1e-13)
+    # the exponent of the threads, from the same survival: one thread of each side alone, and 20 alike
+    one = brentq(survive, 1e-12, 1e12, args=([np.ones(1), np.ones(1)],), xtol=1e-15, rtol=1e-13)
+    assert 20 * (alike / one) ** (1 / 3) == pytest.approx(20**threads.OF_ROWS, rel=1e-9)
     without = 1e6 * (answer.dynamic_rating / answer.acting_load) ** 3
     assert answer.thread_life / without == pytest.approx(uneven / alike, rel=1e-9)
     assert uneven < 0.95 * alike

@@ -228,6 +228,18 @@ def test_at_its_torque_a_safety_is_just_what_is_asked(whole: Calculation, place:
     assert safety == pytest.approx(1.25 if place < 2 else 1.1, rel=1e-9)
 
 
+def test_at_its_torque_the_contact_is_just_as_hot_as_it_may_be(whole: Calculation) -> None:
+    """A lubricant that scuffs early makes that torque the least of all."""
+    at = rv_gearing(RV_GEARING.inputs(load_torque=float(reserve_of(whole).torque[4])))
+    assert float(at.flank.contact_rise) == pytest.approx(float(at.flank.permitted_contact_rise), rel=1e-9)
+    early = {"scuffing_stage": 7, "input_speed": "10000 rpm", "oil_temperature": "90 degC", "face_width": "25 mm"}
+    reserve = reserve_of(run(Capacity(), **early))
+    assert reserve.governing == "scuffing"
+    held = rv_gearing(RV_GEARING.inputs(load_torque=float(rating(reserve).torque_capacity), **early))
+    assert float(held.flank.contact_rise) == pytest.approx(float(held.flank.permitted_contact_rise), rel=1e-9)
+    assert reserve.as_json()["limits"]["contact_rise"]["working_life"]["value"] is None
+
+
 def test_the_flank_of_the_sun_governs_and_its_life_ends_first(whole: Calculation) -> None:
     reserve = reserve_of(whole)
     assert reserve.governing == "pitting of the sun"

@@ -1,7 +1,8 @@
 """Heat, film and reversed bending of the first stage against integrals, laws of their own and limits.
 
-The standards' worked examples of scuffing and micropitting are not public; what is written here a second time is in
-millimetres, as the standards print it.
+The worked examples of ISO/TS 6336-21, ISO/TR 15144-2 and AGMA 925 could not be had; what is written here a second time
+is in millimetres, as the standards print it. Printed numbers are those of the test gears: the load stages of the FZG
+tests, and the film that ISO/TR 15144-1 permits by stage and viscosity (figure A.1).
 """
 
 from math import cos, log10, pi, sqrt, tan
@@ -13,8 +14,10 @@ from scipy.integrate import quad
 
 from gear_geometry.mesh_load import viscosity_at
 from pages import Page
-from rv_gearing.flank import BLOK_FACTOR, Oil, blok, mean_by_tip
+from rv_gearing import geometry
+from rv_gearing.flank import BLOK_FACTOR, Oil, blok, mean_by_tip, path_of
 from rv_gearing.model import RV_GEARING
+from rv_gearing.published import FILM_OF_THE_TEST, MICROPITTING_TEST, STAGES
 from rv_gearing.rating import rv_gearing
 from truing.units import from_si
 
@@ -34,6 +37,25 @@ def test_the_factor_of_blok_is_the_hottest_point_of_a_fast_band_with_the_pressur
 
     hottest = max(rise(place) for place in np.linspace(0, 1, 101))
     assert hottest * sqrt(2) == pytest.approx(BLOK_FACTOR, rel=2e-3)
+
+
+def path_of_group(group: int) -> tuple[np.ndarray, np.ndarray, float]:
+    stage = RV_GEARING.inputs(group=group)
+    load = geometry.load_of(stage)
+    mesh = geometry.mesh_size(stage, load)
+    sizes = [geometry.gear_size(stage, load, mesh, which) for which in ("sun", "planet")]
+    path = path_of(stage, load.duty, mesh, (sizes[0], sizes[1]))
+    return np.asarray(path.radii[0]), np.asarray(path.share), float(mesh.base_pitch)
+
+
+@pytest.mark.parametrize("group", [1, 5, 25])
+def test_two_pairs_a_base_pitch_apart_carry_the_whole_load_together(group: int) -> None:
+    """Statics: where a pair does not carry alone, its share and that of the other pair add up to 1."""
+    radius, share, pitch = path_of_group(group)
+    begins, ends = slice(0, 5), slice(10, 15)
+    assert radius[begins] + pitch == pytest.approx(radius[ends], rel=1e-12)
+    assert share[begins] + share[ends] == pytest.approx(np.ones(5), rel=1e-12)
+    assert share[5:10] == pytest.approx(np.ones(5))
 
 
 def test_flash_temperature_is_that_of_the_printed_formula_in_millimetres() -> None:
@@ -72,7 +94,8 @@ def test_temperatures_of_the_example_point_by_point() -> None:
     begin, end = whole - tips[1], tips[0]
     one = np.linspace(begin, end, 4001)
     two, u = whole - one, z[1] / z[0]
-    share = np.interp(one, [begin, end - pitch, begin + pitch, end], [1 / 3, 1, 1, 1 / 3])
+    share = np.interp(one, [begin, end - pitch, end - pitch + 1e-9, begin + pitch, begin + pitch + 1e-9, end],
+                      [1 / 3, 2 / 3, 1, 1, 2 / 3, 1 / 3])  # fmt: skip
     turn, w = 2 * pi * float(found["mesh_speed"]) / 60, float(found["flank_load"])
     eta = viscosity_at(333.15, 100.0) * (892 - 0.7 * (333.15 - 289)) / 1e3
     curve = base[0] * tan(angle) * base[1] * tan(angle) / whole
@@ -114,6 +137,88 @@ def test_the_film_is_that_of_the_printed_formula_in_millimetres() -> None:
     assert float(found["film_ratio"]) == pytest.approx(min(films) / (4 / 6), rel=1e-3)
 
 
+def micropitting_test(grade: int, stage: int) -> dict[str, Any]:
+    stated = {name: value for name, value in MICROPITTING_TEST.items() if name != "studies.run"}
+    numbers = {name: float(value) for name, value in stated.items() if value.replace(".", "").isdigit()}
+    density = FILM_OF_THE_TEST[grade][0]
+    return rated(**{**stated, **numbers}, viscosity=f"{grade} mm^2/s", oil_density=f"{density} kg/m^3",
+                 stated_sun_torque=f"{STAGES[stage]} N*m")  # fmt: skip
+
+
+@pytest.mark.parametrize(("grade", "stage"), [(32, 10), (100, 10), (460, 5)])
+def test_the_film_of_the_test_gears_is_that_of_the_whole_chain_written_again(grade: int, stage: int) -> None:
+    """ISO/TR 15144-1 in mm and N/mm², with its own steel (45 W/(m K), 440 J/(kg K), 7800 kg/m³) and flash, at A.
+
+    Ours takes Blok's factor 1.11 where the report has 2/sqrt(pi) = 1.128, and a steel that conducts more: a flash that
+    is 11 % lower, and up to 6 % more film.
+    """
+    found = micropitting_test(grade, stage)
+    base, a, pitch = (4.5 * 16 * cos(np.radians(20)), 4.5 * 24 * cos(np.radians(20))), 91.5, 4.5 * pi * cos(0.349066)
+    tips = (4.5 * (18 + 2 * 0.1817), 4.5 * (26 + 2 * 0.1715))
+    ends = [sqrt(tip**2 - own**2) / 2 for tip, own in zip(tips, base, strict=True)]
+    whole, turn, load = sqrt(a**2 - (sum(base) / 2) ** 2), 2 * pi * 2250 / 60, 2000 * STAGES[stage] / 72
+    ratios = [(end - own / 2 * tan(np.arccos(sum(base) / 2 / a))) / pitch for end, own in zip(ends, base, strict=True)]
+    losses = pi * (1 / 16 + 1 / 24) * (1 - sum(ratios) + ratios[0] ** 2 + ratios[1] ** 2)
+
+    def eta(kelvin: float) -> float:
+        return 1e-6 * float(viscosity_at(kelvin, grade)) * (FILM_OF_THE_TEST[grade][0] - 0.7 * (kelvin - 289))
+
+    def alpha_eta(kelvin: float) -> float:
+        return 2.657e-8 * eta(311.0) ** 0.1348 * (1 + 516 * (1 / kelvin - 1 / 311)) * eta(kelvin)
+
+    rolling = [own / 2 * tan(np.arccos(sum(base) / 2 / a)) for own in base]
+    curve = rolling[0] * rolling[1] / whole
+    friction = 0.045 * (load / cos(0.349066) / 14 / (2e-3 * turn * rolling[0] * curve)) ** 0.2
+    friction *= (1e3 * eta(363.15)) ** -0.05 * 2.2 * (0.5 / curve) ** 0.25
+    bulk = 7400 * (turn * STAGES[stage] / 1e3 * friction * losses / (a * 14)) ** 0.72 / 1.2
+    assert float(found["film_bulk_rise"]) == pytest.approx(bulk, rel=0.02)
+    one, two = whole - ends[1], ends[1]
+    radius, speeds, reduced = one * two / whole, (turn * one / 1e3, turn * two / 1.5e3), 206000 / 0.91
+    pressed = sqrt(reduced / 2 / pi * load / 3 / (14 * radius * cos(0.349066)))
+    flash = sqrt(pi) / 2 * friction * 1e6 * pressed * abs(speeds[0] - speeds[1]) / sqrt(45 * 440 * 7800)
+    flash *= sqrt(8e-3 * radius * pressed / reduced) / (sqrt(speeds[0]) + sqrt(speeds[1]))
+    warm = 363.15 + bulk
+    film = 1600 * radius * (1e6 * alpha_eta(warm) / eta(warm) * reduced) ** 0.6
+    film *= (eta(warm) * sum(speeds) / (2000 * reduced * radius)) ** 0.7 * (2 * pi * pressed**2 / reduced**2) ** -0.13
+    cooler = flash * (1.11 / sqrt(4 / pi)) * sqrt(45 * 440 * 7800) / sqrt(50 * 3.8e6)
+    printed, own = (film / 0.5 * (alpha_eta(warm + heat) / alpha_eta(warm)) ** 0.22 for heat in (flash, cooler))
+    assert float(found["film_ratio"]) == pytest.approx(own, rel=1e-2)  # its friction takes F_t/cos(alpha)
+    assert float(found["film_ratio"]) == pytest.approx(printed, rel=0.06)
+    if (grade, stage) == (100, 10):
+        Page("rv_gearing").says(
+            f"{float(found['film_ratio']):.3f}, and written again with the report's own steel {printed:.3f}"
+        )
+
+
+def test_a_film_without_load_or_with_a_load_the_other_way_is_finite() -> None:
+    both = [rated(load_torque=f"{torque} N*m") for torque in (-500, 500)]
+    assert float(both[0]["film_bulk_rise"]) == float(both[1]["film_bulk_rise"]) > 0
+    assert np.isfinite(float(rated(load_torque="0 N*m")["film_ratio"]))
+
+
+def test_the_integral_temperature_is_that_of_the_printed_factors() -> None:
+    """ISO/TR 13989-2, equations 13 to 24, in mm: X_M 50, X_alpha,beta and X_BE, and the mean by the contact ratios."""
+    found = rated(group=5, flank_roughness_sun="3 um", flank_roughness_planet="3 um", planets=1)
+    module, z, angle = 1.25, (23, 63), np.radians(20)
+    tip = [module * (each + 2) for each in z]
+    base, a, u = [module * each * cos(angle) for each in z], module * sum(z) / 2, z[1] / z[0]
+    end = sqrt(tip[0] ** 2 - base[0] ** 2) / 2
+    other = a * np.sin(angle) - end
+    shape = 0.51 * sqrt(u + 1) * (sqrt(end) - sqrt(other / u)) / (end * other) ** 0.25
+    sloped = 1.22 * np.sin(angle) ** 0.25 * cos(angle) ** 0.25 / sqrt(cos(angle)) / sqrt(cos(angle))
+    assert sloped == pytest.approx(0.978, abs=5e-4)  # table 2
+    flash = float(found["flank_friction"]) * 50 * shape * sloped * float(found["flank_load"]) ** 0.75
+    flash *= sqrt(float(found["pitch_line_velocity"])) / a**0.25
+    assert float(found["tip_flash"]) == pytest.approx(flash, rel=0.03)
+    one, two = (each / 2 / pi * (sqrt((top / own) ** 2 - 1) - tan(angle)) for each, top, own in
+                zip(z, tip, base, strict=True))  # fmt: skip
+    mean = 0.7 * (one**2 + two**2) - 0.22 * (one + two) + 0.52 - 0.6 * one * two
+    mean /= 2 * (one + two) * one
+    assert max(one, two) < 1
+    assert two < 1.5 * one
+    assert float(found["integral_rise"]) == pytest.approx((0.7 + 1.5) * flash * mean, rel=0.03)
+
+
 def test_the_viscosity_of_the_film_gets_its_slope_from_two_points_of_an_oil() -> None:
     """An oil VG 100 of viscosity index 95 has 11.1 mm2/s at 100 degC."""
     oil = Oil(at_forty=100.0, density=892.0)
@@ -138,25 +243,34 @@ def test_the_gears_of_the_lubricant_test_run_at_their_own_limit(stage: int) -> N
     """What a lubricant bears is named by the load stage at which the gears of the FZG test A/8.3/90 scuff.
 
     So these very gears at that stage must be about as hot as (23) permits: 16/24 teeth of 4.5 mm at 91.5 mm, 20 mm
-    wide, 3.726 S² N m, 8.3 m/s, oil at 90 degC, load factors 1 (ISO 14635-1). The oil of the
-    test gets warmer than it began, the more the
-    higher the stage, so the calculated rises above 90 degC come out lower there.
+    wide, 3.726 S² N m (372.6 at stage 10, 534.5 at 12), 2170 r/min, oil at 90 degC, load factors 1 (ISO 14635-1; main
+    data as Hoehn, Oster, Tobie and Michaelis print them, goriva i maziva 47 (2008), whose tips are 0.05 mm larger). The
+    oil of the test gets warmer than it began, the more the higher the stage, so the calculated rises above 90 degC come
+    out lower there.
     """
     alone = dict.fromkeys(
         ("application_factor", "planet_load_factor", "stated_dynamic_factor", "stated_face_factor"), 1.0
     )
     found = rated(
         sun_teeth=16, planet_teeth=24, module="4.5 mm", shift_sun=0.8532, shift_planet=-0.5, face_width="20 mm",
-        planets=1, stated_sun_torque=f"{3.726 * stage**2} N*m", stated_mesh_speed="2200 rpm", scuffing_stage=stage,
+        planets=1, stated_sun_torque=f"{3.726 * stage**2} N*m", stated_mesh_speed="2170 rpm", scuffing_stage=stage,
         oil_temperature="90 degC", flank_roughness_sun="2.1 um", flank_roughness_planet="2.1 um",
         stated_transverse_factor=1.0, **alone,
     )  # fmt: skip
     assert float(found["centre_distance"]) == pytest.approx(91.5, abs=0.01)
-    assert float(found["pitch_line_velocity"]) == pytest.approx(8.3, rel=0.01)
+    assert float(found["pitch_line_velocity"]) * 73.2 / 72 == pytest.approx(8.3, rel=3e-3)  # at the rolling circle
     for reached, bears in (("contact_rise", "scuffing_rise"), ("integral_rise", "scuffing_integral_rise")):
-        assert float(found[reached]) == pytest.approx(float(found[bears]), rel=0.2)
+        assert float(found[reached]) == pytest.approx(float(found[bears]), rel=0.17)
     if stage == 10:
         Page("rv_gearing").says(
             f"{float(found['contact_rise']):.0f} K of {float(found['scuffing_rise']):.0f} K by the flash method, "
-            f"{float(found['integral_rise']):.0f} K of {float(found['scuffing_integral_rise']):.0f} K by the integral"
+            f"{float(found['integral_rise']):.0f} K of {float(found['scuffing_integral_rise']):.0f} K by the integral",
+            f"{100 * (0.06 * float(found['normal_curvature']) ** 0.25 / 0.099 - 1):.0f} % more on the test gears",
+        )
+    if stage in (6, 12):
+        Page("rv_gearing").says(
+            {6: "{:.2f} to 0.87 and {:.2f} to 0.84", 12: "1.05 to {:.2f} and 1.01 to {:.2f}"}[stage].format(
+                float(found["contact_rise"]) / float(found["scuffing_rise"]),
+                float(found["integral_rise"]) / float(found["scuffing_integral_rise"]),
+            )
         )

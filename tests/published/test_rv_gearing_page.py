@@ -202,7 +202,10 @@ def test_heat_second_stage_and_shifts_of_the_example() -> None:
         "permitted",
         f"$\\mu = 0.02$ takes {dragged:.3f} of the efficiency {told['efficiency']:.3f} of the example",
         f"it is {told['integral_rise']:.1f} K of {told['scuffing_integral_rise']:.0f} K",
-        f"film is {told['film_ratio']:.3f} of the roughness", f"with 0.05 it is {told['pin_loss_efficiency']:.4f}",
+        f"with 1 the example's contact would be {told['contact_rise'] - told['bulk_rise'] / 3:.1f} K above the oil "
+        f"instead of {told['contact_rise']:.1f}", f"film is {told['film_ratio']:.3f} of the roughness",
+        f"{100 * (1 - 0.06 * told['normal_curvature']**0.25 / 0.099):.0f} % less on the small teeth of the example",
+        f"with 0.05 it is {told['pin_loss_efficiency']:.4f}",
         f"has {told['crank_load'] / 1e3:.1f} kN at most and $P$ = {told['equivalent_load'] / 1e3:.2f} kN at "
         f"{told['crank_speed']:.0f} r/min: 6000 h need $C$ = {told['needed_rating']:.1f} kN",
     ):  # fmt: skip

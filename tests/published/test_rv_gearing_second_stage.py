@@ -1,4 +1,4 @@
-"""The second stage against pins summed one by one, another calculation of the repository, and published lives."""
+"""The second stage against pins summed one by one, a flank drawn point by point, and published lives."""
 
 from typing import Any
 
@@ -10,7 +10,6 @@ from gear_geometry import cycloid
 from rv_gearing.model import RV_GEARING
 from rv_gearing.rating import rv_gearing
 from rv_gearing.second_stage import mean_load
-from rv_wear import geometry as wear_geometry
 from truing.errors import InfeasibleError
 from truing.units import from_si
 
@@ -23,16 +22,16 @@ def rated(**stated: Any) -> dict[str, float]:
     return {name: float(np.asarray(from_si(value, fields[name].unit))) for name, value in answers.items()}
 
 
-def pin_by_pin(torque: float, turn: float) -> tuple[float, float, float]:
+def pin_by_pin(torque: float, turn: float, pins: int = PINS, short: float = K) -> tuple[float, float, float]:
     """Equal springs at all pins: force by arm about the disc's centre; sum across and along, and the largest force.
 
     Coordinates: pin circle at the origin, disc centre at (e, 0), pitch point at (e z_p, 0); pins at ``turn`` and on.
     """
-    throw = K * CIRCLE / PINS
-    angle = (np.arange(PINS) + turn) * 2 * np.pi / PINS
-    towards = np.stack([CIRCLE * np.cos(angle) - throw * PINS, CIRCLE * np.sin(angle)])
+    throw = short * CIRCLE / pins
+    angle = (np.arange(pins) + turn) * 2 * np.pi / pins
+    towards = np.stack([CIRCLE * np.cos(angle) - throw * pins, CIRCLE * np.sin(angle)])
     towards /= np.hypot(*towards)  # a contact force points from the pitch point to the pin
-    arm = towards[1] * (throw * PINS - throw)  # about the disc's centre
+    arm = towards[1] * (throw * pins - throw)  # about the disc's centre
     arm = np.maximum(arm, 0.0)
     force = torque * arm / np.sum(arm**2)
     along, across = towards @ force
@@ -51,6 +50,14 @@ def test_the_resultant_of_all_pins_is_that_of_a_sum_over_pins(turn: float) -> No
     assert closed[1] == pytest.approx(exact, rel=1e-9)
 
 
+@pytest.mark.parametrize(("pins", "short", "off"), [(20, 0.85, 1e-3), (40, 0.75, 1e-5), (10, 0.85, 7e-3)])
+def test_the_integrals_are_the_mean_of_the_sums_over_a_pitch(pins: int, short: float, off: float) -> None:
+    sums = np.mean([pin_by_pin(500.0, turn, pins, short) for turn in (np.arange(100) + 0.5) / 100], axis=0)
+    across, along = cycloid.resultant(500.0, short, pins, CIRCLE)
+    assert sums[0] == pytest.approx(float(across), rel=1e-12)
+    assert sums[1] == pytest.approx(float(along), rel=off)
+
+
 def test_flank_and_pin_touch_as_the_drawn_profile_does() -> None:
     """Curvature of the path of the pin centre by finite differences: the disc rolls on the pitch circle of the pins."""
     turn = np.linspace(0.0, 2 * np.pi / 39, 2001)
@@ -66,17 +73,23 @@ def test_flank_and_pin_touch_as_the_drawn_profile_does() -> None:
     assert cycloid.least_convex_radius(K, PINS, CIRCLE) == pytest.approx(convex.min(), rel=1e-6)
 
 
-def test_the_wear_calculation_of_the_same_disc_has_the_same_geometry() -> None:
-    mesh = wear_geometry.Mesh(
-        pin_circle_radius=CIRCLE, pin_radius=PIN, eccentricity=K * CIRCLE / PINS, width=0.01, equidistant=0.0,
-        shift=0.0, torque=500.0, young_modulus=206e9, poisson_ratio=0.3, threshold=1e-6,
-    )  # fmt: skip
-    angle = np.linspace(0.05, 3.0, 30)
-    own = cycloid.relative_radius(K, PINS, (CIRCLE, PIN), angle)
-    assert np.allclose(own, np.asarray(wear_geometry.relative_radius(mesh, angle)), rtol=1e-12)
-    assert cycloid.largest_force(500.0, K, PINS, CIRCLE) == pytest.approx(
-        float(np.asarray(mesh.start_force)), rel=1e-12
-    )
+def test_the_gap_between_flank_and_pin_opens_as_between_a_plane_and_the_cylinder_in_its_place() -> None:
+    """The flank drawn point by point, a pin radius inside the path of the pin: the gap to the pin beside the contact.
+
+    A cylinder of radius R on a plane has a gap of s²/(2 R) at a distance s.
+    """
+    turn = np.linspace(0.0, 2 * np.pi / 39, 400_001)
+    throw = K * CIRCLE / PINS
+    path = CIRCLE * np.exp(1j * turn) - throw * np.exp(1j * PINS * turn)
+    along = CIRCLE * np.exp(1j * turn) - throw * PINS * np.exp(1j * PINS * turn)
+    flank = path - PIN * along / np.abs(along)
+    for place in (20_000, 60_000, 150_000):  # concave, convex, convex
+        to_contact = (flank[place] - path[place]) / PIN
+        seen = (flank[place - 1000 : place + 1001] - path[place]) / to_contact
+        gap, aside = np.abs(seen) - PIN, np.abs(seen.imag)
+        measured = np.polyfit(aside**2, gap, 1)[0]
+        own = cycloid.relative_radius(K, PINS, (CIRCLE, PIN), (PINS - 1) * turn[place])
+        assert 1 / (2 * abs(measured)) == pytest.approx(float(own), rel=5e-3)
 
 
 def test_torque_of_the_discs_is_what_power_says() -> None:
