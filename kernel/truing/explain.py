@@ -154,15 +154,14 @@ def of_input(setup: Setup, name: str) -> dict[str, Any]:
         "limit_of": [
             require_words(require, "") for require in _requires(setup) if name in {require.limit, require.reliability}
         ],
-        "varied": [_varied(vary) for vary in model.objectives if isinstance(vary, Vary) and vary.input == name],
+        "varied": [_varied(each) for each in model.objectives if isinstance(each, Vary) and each.input == name],
         "effects": [_effect_row(setup, effect) for effect in changed],
     }
 
 
 def _varied(vary: Vary) -> str:
-    if vary.by:
-        return f"follows {vary.by}"
-    return f"may be chosen from {vary.low} to {vary.high}" + (f" in steps of {vary.step}" if vary.step else "")
+    steps = f" in steps of {vary.step}" if vary.step else ""
+    return f"follows {vary.by}" if vary.by else f"may be chosen from {vary.low} to {vary.high}{steps}"
 
 
 def _is_given(setup: Setup, name: str) -> bool:

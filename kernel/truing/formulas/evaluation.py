@@ -129,9 +129,17 @@ def _normal_probability(x: Any) -> Any:
     return ndtr(_pure(x))
 
 
+def _alike(equality: Callable[..., Any], first: Any, second: Any) -> Any:
+    """Compare what may be compared at all: pint from 0.26 on calls quantities of unlike dimensions unequal."""
+    if hasattr(first, "m_as") or hasattr(second, "m_as"):
+        np.less(first, second)
+    return equality(first, second)
+
+
 OPERATORS: Mapping[str, Callable[..., Any]] = {
     "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "**": _power,
-    "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal,
+    "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal,
+    "==": partial(_alike, np.equal), "!=": partial(_alike, np.not_equal),
 }  # fmt: skip
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     **{name: getattr(np, name) for name in ("exp", "log", "log10", "abs", "sign", "sin", "cos")},

@@ -101,7 +101,7 @@ def _columns(name: str, value: Any) -> tuple[dict[str, NDArray[Any]], str]:
             return {}, "is an array of cells that are no texts; save it as a vector"
         return {name: np.array(texts, dtype=object)}, ""
     if array.dtype.kind == "U" and array.ndim == 1:
-        words = np.array([text.strip() for text in array.tolist()], dtype=object)
+        words: Any = np.array([str(text).strip() for text in array.tolist()], dtype=object)
         return ({name: words}, "") if len(array) > 1 else ({}, "is one text")
     if array.ndim != 2 or array.dtype.kind not in "fiub":
         return {}, "is no real vector or matrix"

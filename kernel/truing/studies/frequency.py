@@ -145,7 +145,7 @@ class Frequency:
             return np.geomspace(asked[0], asked[-1], self.points) if ".." in self.frequencies else asked
         of_poles = np.abs(system.poles) / (2 * np.pi)
         of_poles = of_poles[of_poles > 0] if (of_poles > 0).any() else np.ones(1)
-        low, high = of_poles.min() / DECADE, of_poles.max() * DECADE
+        low, high = float(of_poles.min()) / DECADE, float(of_poles.max()) * DECADE
         high = 0.5 / system.step if system.step else high
         return np.geomspace(min(low, high / DECADE), high, self.points)
 
