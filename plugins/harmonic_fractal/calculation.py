@@ -7,7 +7,7 @@ import numpy as np
 from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
-from harmonic_fractal.quantities import SIZES, Drive, Stiffness
+from harmonic_fractal.quantities import RACES, ROW, SIZES, Drive, Stiffness
 from harmonic_fractal.structure import kept_share, structure_function
 from truing import Float, column, feasible
 
@@ -196,22 +196,42 @@ def around_of(drive: Drive) -> dict[str, Float]:
     return {"shear_modulus": shear, "cup_moment": moment, "cup_stiffness": cup, "series_compliance": compliance}
 
 
-def wave_torsion(drive: Drive, torque: Float) -> Float:
-    """Return the torsion, rad, of the wave generator's balls in their races from the reference to a size of torque.
+def ball_torsion(drive: Drive) -> Float:
+    """Return the torsion at wave_torque by the balls of the wave generator between their races, rad; 0 without any.
 
-    Hertz: they close as load^(2/3) and as modulus^(-2/3).
+    The teeth press the flexspline inwards with T tan(alpha)/r_p, onto the balls under both engaged arcs, with shares by
+    the square of the cosine. A ball and its races close by c Q^(2/3); by Castigliano the drive turns by the sum of
+    c Q^(5/3) over T. Cam and rings are rigid between balls. Left out is preload, which makes a bearing stiffer.
     """
-    scale = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) / np.power(drive.wave_torque, 2.0 / 3.0)
+    steel = 0.5 * drive.modulus_factor * drive.flexspline.youngs_modulus / (1.0 - drive.flexspline.poisson_ratio**2)
+    loaded = np.maximum(drive.balls, 1.0) * drive.engaged_pairs / drive.flexspline_teeth
+    closing = float(f"{RACES * ROW:.6g}") * np.power(drive.wave_torque / (steel * loaded), 2.0 / 3.0)
+    lever = np.power(np.tan(drive.pressure_angle) / drive.pitch_radius, 5.0 / 3.0)
+    return np.where(np.asarray(drive.balls) > 0.0, closing * lever / np.cbrt(drive.ball_diameter), 0.0)
+
+
+def wave_scale(drive: Drive) -> Float:
+    """Return the torsion of the wave generator over torque^(2/3), rad/(N m)^(2/3): what is stated, and its balls.
+
+    Hertz: contacts close as load^(2/3) and as modulus^(-2/3).
+    """
+    whole = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) + ball_torsion(drive)
+    value: Float = whole / np.power(drive.wave_torque, 2.0 / 3.0)
+    return value
+
+
+def wave_torsion(drive: Drive, torque: Float) -> Float:
+    """Return the torsion, rad, of the wave generator from the reference to a size of torque."""
     beyond = np.maximum(np.abs(torque), drive.reference_torque)
-    value: Float = scale * (np.power(beyond, 2.0 / 3.0) - np.power(drive.reference_torque, 2.0 / 3.0))
+    value: Float = wave_scale(drive) * (np.power(beyond, 2.0 / 3.0) - np.power(drive.reference_torque, 2.0 / 3.0))
     return value
 
 
 def wave_compliance(drive: Drive) -> Float:
     """Return the slope of that torsion at the torque, rad/(N m), from torque 0 on as if it had no reference; 0 at 0."""
     size = np.abs(np.asarray(drive.torque, dtype=float))
-    scale = drive.wave_torsion_stated * drive.modulus_factor ** (-2.0 / 3.0) / np.power(drive.wave_torque, 2.0 / 3.0)
-    return np.where(size > 0.0, 2.0 / 3.0 * scale * np.where(size > 0.0, size, 1.0) ** (-1.0 / 3.0), 0.0)
+    slope = 2.0 / 3.0 * wave_scale(drive) * np.where(size > 0.0, size, 1.0) ** (-1.0 / 3.0)
+    return np.where(size > 0.0, slope, 0.0)
 
 
 def over(value: Float, whole: Float) -> Float:
@@ -300,6 +320,7 @@ def _mesh(drive: Drive, contact: rough_contact.Contact, mesh: DriveMesh) -> dict
         "mesh_stiffness": stiffness,
         "mesh_torsion": whole,
         **around,
+        "ball_torsion": ball_torsion(drive),
         "wave_torsion": wave,
         "wave_compliance": wave_slope,
         "torsional_stiffness": stiffness / (1.0 + (compliance + wave_slope) * stiffness),

@@ -1,6 +1,8 @@
 """From the lines of a surface to fractal dimension and roughness: settings, fits, and what was found."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -606,22 +608,33 @@ class _Unbiased:
     """D and G without the bias of levelling, deviations (B, 2) of such fits, and what they are once it is taken out.
 
     D follows the fit by ``gain``, and the level that D by ``shift``: the smoother a surface, the more levelling took.
+    ``growth`` (2, 2) is by what the deviations change per unit of the surface's D, in parts of themselves.
     """
 
     fit: _Fit
     deviations: Array
     gain: float
     shift: float
+    growth: Array = field(default_factory=lambda: np.zeros((2, 2)))
 
     def of_surfaces(self, deviations: Array) -> Array:
-        """Return the deviations (B, 2) of surfaces from those of their fits."""
-        dimension = self.gain * deviations[:, 0]
-        return np.stack([dimension, deviations[:, 1] + self.shift * dimension], axis=1)
+        """Return the deviations (B, 2) of the surfaces of which fits that deviate so would be as this one.
+
+        A smoother surface scatters more. So each surface is the one whose own scatter, and not that about the estimate,
+        leads to this fit: s = -gain (e + s growth e), solved for its D.
+        """
+        more = deviations @ self.growth.T
+        least = np.maximum(1.0 + self.gain * more[:, 0], LEAST_SHARE)
+        dimension = -self.gain * deviations[:, 0] / least
+        level = -deviations[:, 1] - dimension * more[:, 1] + self.shift * dimension
+        return np.stack([dimension, level], axis=1)
 
 
 TURNS = 3  # of the search for the dimension that would be found as this one was
 NEAR = 1.02, 1.98  # bounds of it
 APART = 0.01  # of two dimensions of which it is looked at by how much what is found differs
+BESIDE = 0.05  # about a standard deviation of D of a small patch: from here on to either side scatter is compared
+LEAST_SHARE = 0.3  # of the slope by which an estimate is carried to a surface: a draw beyond three deviations at most
 
 
 def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Estimation) -> _Unbiased | None:
@@ -641,9 +654,10 @@ def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Est
         seen = levelling.expected(exponent, steps, taken) * np.exp(-0.5 * np.diagonal(covariance))
         return _law(curve.lags, lines.spacing**exponent * seen, settings)
 
+    scatter = partial(_scatter_of, steps=steps, taken=taken)
     dimension = found.dimension
     for _ in range(2):
-        covariance = levelling.scatter(4.0 - 2.0 * dimension, steps, taken)
+        covariance = scatter(dimension)
         spread = covariance if settings.method == "pooled" else _of_one_line(dimension, steps, taken)
         for _ in range(TURNS):
             off = found.dimension - (2.0 - float(law(dimension, spread).slope) / 2.0)
@@ -659,9 +673,27 @@ def _unbiased(lines: Lines, curve: StructureFunction, found: _Fit, settings: Est
     level = _levels(_pair(found), curve.lags)[1] + seen_and_lost(dimension)[1]
     if len(lines.heights) > 1:
         fit = _at(found, dimension, level, curve.lags)
-        return _Unbiased(fit, _of_patches(curve, found, covariance, settings), gain, shift)
+        growth = _growth(curve, found, settings, about=dimension, covariance=scatter)
+        return _Unbiased(fit, _of_patches(curve, found, covariance, settings), gain, shift, growth)
     start = _Unbiased(_at(found, dimension, level, curve.lags), np.empty((0, 2)), gain, shift)
     return _by_making(lines, curve, found, start, settings)
+
+
+def _growth(
+    curve: StructureFunction, found: _Fit, settings: Estimation, *, about: float, covariance: Callable[[float], Array]
+) -> Array:
+    """Return the matrix (2, 2) by which deviations of fits change per unit of the D of the surface."""
+    ends = np.clip([about - BESIDE, about + BESIDE], *NEAR)
+    settings, roots = replace(settings, resamples=Estimation.resamples), []
+    for end in ends.tolist():
+        scattered = _of_patches(curve, found, covariance(end), settings)
+        roots.append(np.linalg.cholesky(np.cov(scattered.T)))
+    change: Array = (roots[1] - roots[0]) / (ends[1] - ends[0]) @ np.linalg.inv(0.5 * (roots[0] + roots[1]))
+    return change
+
+
+def _scatter_of(dimension: float, *, steps: Steps, taken: Levelling) -> Array:
+    return levelling.scatter(4.0 - 2.0 * dimension, steps, taken)
 
 
 def _of_one_line(dimension: float, steps: Steps, taken: Levelling) -> Array:

@@ -87,7 +87,8 @@ SECTIONS = [
     ),
     Section(
         "Torsion of the drive",
-        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "wave_torsion", "wave_compliance",
+        "shear_modulus", "cup_moment", "cup_stiffness", "series_compliance", "ball_torsion", "wave_torsion",
+        "wave_compliance",
         "torsional_stiffness", "torsion", "rough_torsion", "catalogue_torsion", "catalogue_stiffness",
         "catalogue_ratio", "rough_share",
         text="Torsion is the integral of compliance over torque, from the reference torque on. Beside it stands what "

@@ -105,10 +105,13 @@ class Drive:
                                     note="compliance in series with the mesh: cup, wave generator, bearing, rig",
                                     at_least=0, at_most=1e6)  # fmt: skip
     wave_torsion_stated: Float = given(0.0, "urad", symbol="theta_w0", note="torsion at wave_torque by the wave "
-                                       "generator with its bearing, which grows as contacts of balls do, T^(2/3); 0: "
-                                       "rigid", at_least=0, at_most=1e6)  # fmt: skip
+                                       "generator beside its balls, taken to grow as contacts of balls do, T^(2/3); "
+                                       "0: rigid", at_least=0, at_most=1e6)  # fmt: skip
     wave_torque: Float = given(25.0, "N*m", symbol="T_w", note="torque at which that torsion is stated", above=0,
                                at_most=1e6)  # fmt: skip
+    balls: Float = given(0.0, "", symbol="Z_b", note="balls in the bearing of the wave generator, whose closing is "
+                         "then calculated; 0: it is not", at_least=0, at_most=500)  # fmt: skip
+    ball_diameter: Float = given(4.0, "mm", symbol="d_b", note="of these balls", above=0, at_most=200)
     # What is asked
     required_stiffness: Float = given(None, "N/m", symbol="K_req", note="stiffness asked of the pair; not given: none",
                                       above=0, at_most=1e15)  # fmt: skip
@@ -142,6 +145,12 @@ PATENT_7 = "equation 7 of the patent, with a radius in place of its area"
 CONTACTS = "Yan and Komvopoulos 1998"
 NUMBERS = "Wang and Komvopoulos 1994"
 CATALOGUES = "catalogues of the maker, by size and ratio"
+RACES = 1.02
+"""Closing of a ball and both its races, by (load over modulus)^(2/3)/diameter^(1/3): 4.36e-4 Q^(2/3)/d^(1/3) of steel,
+N and mm (Palmgren; Harris, Rolling Bearing Analysis). Between flat plates it would be 2.08."""
+ROW = 1.2885
+"""Sum of w^(5/3) over many balls with shares w by the square of the cosine, by their number to the power -2/3:
+2^(5/3) Gamma(13/6)/(sqrt(pi) Gamma(8/3))."""
 SHARES = "load shares by the square of the cosine along two opposite arcs"
 
 
@@ -299,16 +308,24 @@ class Stiffness:
         "urad/(N*m)", symbol="c_d", note="compliance of all that is in series with the mesh",
         formula="drive_compliance / modulus_factor + cup_length / (shear_modulus * cup_moment)",
     )  # fmt: skip
+    ball_torsion: Float = found(
+        "urad", symbol="theta_b", note="torsion at wave_torque by the balls of the wave generator alone, calculated",
+        source="Hertz, by Palmgren's constant; Castigliano over the balls under the engaged arcs",
+        formula=f"cases({RACES * ROW:.6g} * wave_torque**(2/3) * (tan(pressure_angle) / pitch_radius)**(5/3)"
+        " / (ball_diameter**(1/3) * (modulus_factor * youngs_modulus_flexspline"
+        " / (2 * (1 - poisson_ratio_flexspline**2)) * max(balls, 1) * engaged_pairs / flexspline_teeth)**(2/3)),"
+        " balls > 0, 0)",
+    )  # fmt: skip
     wave_torsion: Float = found(
-        "urad", symbol="theta_w", note="torsion by the contacts of the wave generator, from the reference torque on, "
-        "with an amplitude that is stated and not calculated",
-        formula="sign(torque) * wave_torsion_stated * modulus_factor**(-2/3)"
+        "urad", symbol="theta_w", note="torsion by the wave generator from the reference torque on: what is stated, "
+        "not calculated, and its balls",
+        formula="sign(torque) * (wave_torsion_stated * modulus_factor**(-2/3) + ball_torsion)"
         " * (max(abs(torque), reference_torque)**(2/3) - reference_torque**(2/3)) / wave_torque**(2/3)",
     )  # fmt: skip
     wave_compliance: Float = found(
-        "urad/(N*m)", symbol="c_w", note="compliance of these contacts at the torque; 0 without torque",
-        formula="cases(2/3 * wave_torsion_stated * modulus_factor**(-2/3) * abs(torque)**(-1/3) / wave_torque**(2/3),"
-        " abs(torque) > 0, 0)",
+        "urad/(N*m)", symbol="c_w", note="compliance of the wave generator at the torque; 0 without torque",
+        formula="cases(2/3 * (wave_torsion_stated * modulus_factor**(-2/3) + ball_torsion) * abs(torque)**(-1/3)"
+        " / wave_torque**(2/3), abs(torque) > 0, 0)",
     )  # fmt: skip
     torsional_stiffness: Float = found(
         "N*m/rad", symbol="K_theta", note="stiffness of the mesh in series with the drive, at the torque",

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.special import ndtr, ndtri
 
 from gear_geometry.drawing import BLUE, panels, quiet
 from harmonic_fractal.contact import Rough, contact_of, flanks_of, interface_of, pressed, together
@@ -209,12 +210,29 @@ class Summary:
     failed: int
 
 
+def interval_about(nominal: float, values: Array) -> tuple[float, float]:
+    """Return the 95 % interval of a result from its values (n,) by the pairs, and at the estimate; NaN left out.
+
+    Percentiles; and where the values lie on one side of that at the estimate, as those of K of smooth flanks do, which
+    is about its least there, the end on the other side is that of bias-corrected percentiles (Efron 1981). Plain ones
+    held K on 8 of 10 patches of D_s 1.2, corrected ones alone on 9 of 10 of D_s 1.3.
+    """
+    known = values[np.isfinite(values)]
+    if not known.size or not np.isfinite(nominal):
+        return nan, nan
+    below = 0.5 * (np.mean(known < nominal) + np.mean(known <= nominal))
+    shift = 2.0 * ndtri(np.clip(below, 0.5 / known.size, 1.0 - 0.5 / known.size))
+    low, high = np.quantile(known, ndtr([min(shift, 0.0) - 1.96, max(shift, 0.0) + 1.96]))
+    return float(low), float(high)
+
+
 def _summary(nominal: float, values: Array, independent: Array) -> Summary:
     """Return what the pairs say of one result: taken together (n,), and apart (n,)."""
     known = values[np.isfinite(values)]
-    low, median, high = np.percentile(known, (2.5, 50.0, 97.5)) if known.size else (np.nan,) * 3
+    median = np.median(known) if known.size else nan
+    low, high = interval_about(nominal, values)
     return Summary(
-        nominal=nominal, low=float(low), median=float(median), high=float(high), relative_sd=_relative_sd(values),
+        nominal=nominal, low=low, median=float(median), high=high, relative_sd=_relative_sd(values),
         independent_sd=_relative_sd(independent), failed=int(len(values) - known.size),
     )  # fmt: skip
 

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from press_linkage.effects import GRAVITY, JOINTS, KNEE
 from press_linkage.errors import face_sensitivities
@@ -69,6 +68,10 @@ class Balance:
 
     moved: Array
     tension: Array
+
+    def within(self, places: slice) -> "Balance":
+        """The same at some of the positions."""
+        return Balance(self.moved[..., places, :], self.tension[..., places, :])
 
 
 def _stacked(parts: Mapping[int, Float], count: int) -> Array:
@@ -358,26 +361,22 @@ def _left_over(of: Chain, apart: Array, longer: Array) -> Array:
 def _share(of: Chain, apart: Array, longer: Array) -> Array:
     """The share of a step that goes too far at which the energy is least on it (m,).
 
-    The slope of the energy grows along the step, straight between the shares at which a spring reaches its play.
+    The slope of the energy grows along the step, straight between the shares at which a spring enters or leaves its
+    play: within it, it grows by less.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        reached = np.concatenate([(of.play - apart) / longer, (-of.play - apart) / longer], axis=-1)
-    ends = np.clip(np.nan_to_num(reached, nan=1.0), 0.0, 1.0)
-    shares = np.sort(np.pad(ends, ((0, 0), (1, 1)), constant_values=((0, 0), (0.0, 1.0))), axis=-1)
-    first, last = np.zeros(len(apart), dtype=int), np.full(len(apart), shares.shape[-1] - 1)
-
-    def at(place: NDArray[np.int_]) -> tuple[Array, Array]:
-        share = np.take_along_axis(shares, place[:, np.newaxis], axis=-1)
-        return share[:, 0], _left_over(of, apart + share * longer, longer)
-
-    while np.any(last - first > 1):
-        middle = (first + last) // 2
-        beyond = at(middle)[1] > 0.0
-        first, last = np.where(beyond, first, middle), np.where(beyond, middle, last)
-    (low, below), (high, above) = at(first), at(last)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        between = np.clip(np.nan_to_num(-below / (above - below), nan=1.0), 0.0, 1.0)
-    return np.asarray(low + (high - low) * between)
+        reached = np.nan_to_num(np.stack([(of.play - apart) / longer, (-of.play - apart) / longer]), nan=1.0)
+    reached = np.clip(np.concatenate([reached.min(axis=0), reached.max(axis=0)], axis=-1), 0.0, 1.0)
+    growth = of.stiffness * longer * longer
+    order = np.argsort(reached, axis=-1)
+    ends = np.zeros((len(apart), 1)), np.ones((len(apart), 1))
+    shares = np.concatenate([ends[0], np.take_along_axis(reached, order, axis=-1), ends[1]], axis=-1)
+    less = np.take_along_axis((1.0 - FILM) * np.concatenate([-growth, growth], axis=-1), order, axis=-1)
+    rates = np.cumsum(np.concatenate([growth.sum(axis=-1, keepdims=True), less], axis=-1), axis=-1)
+    slopes = _left_over(of, apart, longer)[:, np.newaxis] + np.cumsum(rates * np.diff(shares), axis=-1)
+    rows, last = np.arange(len(apart)), np.argmax(slopes >= 0.0, axis=-1)
+    least = shares[rows, last + 1] - slopes[rows, last] / rates[rows, last]
+    return np.where(slopes[:, -1] > 0.0, np.clip(least, 0.0, 1.0), 1.0)
 
 
 # The calculation itself
@@ -413,57 +412,92 @@ def press_under_load(given: LoadedPress) -> LoadedAnswers:
     """The press over the times and in its acceptance test. Floats are numbers or (n,); series (k,)."""
     press = replace(in_columns(given), acceptance_angle=given.acceptance_angle)
     crank = course(press)
-    force = press_force(press, crank.angle)
-    half, balance = at_angles(press, crank, force, press.load_offset)
-    pushed = -balance.tension
-    tilt = inclined(press, balance, force * press.load_offset)
-    guides = [-pushed[..., guide] for guide in SLIDER_GUIDES]
-    largest = np.maximum(*(np.max(np.abs(guide), axis=-1) for guide in guides))
+    force, count = press_force(press, crank.angle), np.shape(crank.angle)[-1]
+    test, rated, beside = acceptance(press)
+    half, balance = at_angles(
+        press,
+        CrankCourse(*(_in_a_row(*parts) for parts in zip(crank, _standing(test), strict=True))),
+        _in_a_row(np.broadcast_to(force, np.shape(crank.angle)), rated),
+        _in_a_row(press.load_offset + np.zeros(count), beside),
+    )
+    face = np.asarray(half.face)
     return LoadedAnswers(
         time=np.atleast_1d(given.times),
         crank_angle=crank.angle,
         press_force=force,
-        slider_position=half.face,
-        deflection=lifted(press, balance, force),
-        slider_tilt=tilt,
-        slider_shift=balance.moved[..., SLIDER],
-        platform_tilt=balance.moved[..., PLATFORM + 2],
-        upper_guide_force=guides[0],
-        lower_guide_force=guides[1],
-        platform_guide_upper=balance.tension[..., PLATFORM_GUIDES[0]],
-        platform_guide_lower=balance.tension[..., PLATFORM_GUIDES[1]],
-        lower_link_1=pushed[..., LOWERS[1]],
-        lower_link_2=pushed[..., LOWERS[2]],
-        upper_link_1=pushed[..., UPPERS[1]],
-        upper_link_2=pushed[..., UPPERS[2]],
-        rod_1=pushed[..., RODS[1]],
-        rod_2=pushed[..., RODS[2]],
-        largest_guide_force=largest,
-        largest_tilt=np.max(np.abs(tilt), axis=-1),
-        **tested(press),
+        slider_position=face[..., :count],
+        **of_the_stroke(press, np.asarray(half.upper.sine)[..., :count], balance.within(slice(count)), force),
+        **tested(press, face[..., count:], balance.within(slice(count, None)), rated, beside),
+        total_clearance=clearance(press, half)[..., count],
     )
 
 
-def tested(press: LoadedPress) -> dict[str, Float]:
-    """The acceptance test: at the bottom dead centre under load, and without force over its crank angles."""
+def _in_a_row(one: Float, other: Float) -> Array:
+    """Values at some positions and then those at others, (k,) or (n, k), for as many machines as either has."""
+    machines = np.broadcast_shapes(np.shape(one)[:-1], np.shape(other)[:-1])
+    parts = [np.broadcast_to(part, (*machines, np.shape(part)[-1])) for part in (one, other)]
+    return np.concatenate(parts, axis=-1)
+
+
+def of_the_stroke(press: LoadedPress, upright: Array, balance: Balance, force: Float) -> dict[str, Float]:
+    """What is read over the times by the names of the results, and the largest of it.
+
+    ``upright`` is the sine of the upper knee link: a link that is pressed pushes the frame at M up by it.
+    """
+    pushed = -balance.tension
+    raised = upright / press.ground_stiffness_vertical
+    tilt = inclined(press, balance, force * press.load_offset)
+    guides = [-pushed[..., guide] for guide in SLIDER_GUIDES]
+    largest = np.maximum(*(np.max(np.abs(guide), axis=-1) for guide in guides))
+    return {
+        "deflection": lifted(press, balance, force),
+        "slider_tilt": tilt,
+        "slider_shift": balance.moved[..., SLIDER],
+        "platform_tilt": balance.moved[..., PLATFORM + 2],
+        "upper_guide_force": guides[0],
+        "lower_guide_force": guides[1],
+        "platform_guide_upper": balance.tension[..., PLATFORM_GUIDES[0]],
+        "platform_guide_lower": balance.tension[..., PLATFORM_GUIDES[1]],
+        "ground_rise_1": pushed[..., UPPERS[1]] * raised,
+        "ground_rise_2": pushed[..., UPPERS[2]] * raised,
+        "lower_link_1": pushed[..., LOWERS[1]],
+        "lower_link_2": pushed[..., LOWERS[2]],
+        "upper_link_1": pushed[..., UPPERS[1]],
+        "upper_link_2": pushed[..., UPPERS[2]],
+        "rod_1": pushed[..., RODS[1]],
+        "rod_2": pushed[..., RODS[2]],
+        "largest_guide_force": largest,
+        "largest_tilt": np.max(np.abs(tilt), axis=-1),
+    }
+
+
+def acceptance(press: LoadedPress) -> tuple[Array, Array, Array]:
+    """Crank angles (k,), forces and offsets (k,) or (n, k) of the test.
+
+    Three at the bottom dead centre, without force, under the rated one in the middle and at its offset; then those of
+    the test without force.
+    """
     angles = np.atleast_1d(press.acceptance_angle)
     feasible(angles.size > 1, "acceptance_angle: two crank angles or more, or there is no travel to measure over")
     none = np.zeros(angles.size)
-    force = np.concatenate([[0.0, 1.0, 1.0], none]) * press.rated_force
-    offset = np.concatenate([[0.0, 0.0, 1.0], none]) * press.rated_offset
-    half, balance = at_angles(press, _standing(np.concatenate([np.zeros(3), angles])), force, offset)
+    rated, beside = np.concatenate([[0.0, 1.0, 1.0], none]), np.concatenate([[0.0, 0.0, 1.0], none])
+    return np.concatenate([np.zeros(3), angles]), rated * press.rated_force, beside * press.rated_offset
+
+
+def tested(press: LoadedPress, face: Array, balance: Balance, force: Array, offset: Array) -> dict[str, Float]:
+    """What the acceptance test shows by the names of the results; ``face`` is the height of the rigid slider."""
     height, tilt = lifted(press, balance, force), inclined(press, balance, force * offset)
     deflection, slope = height[..., 1] - height[..., 0], np.abs(tilt[..., 2] - tilt[..., 1])
     free = slice(3, None)
-    face = balance.moved[..., free, SLIDER] - balance.moved[..., free, SLIDER + 2] * press.face_depth
+    leaning = balance.moved[..., free, SLIDER + 2]
+    aside = balance.moved[..., free, SLIDER] - leaning * press.face_depth
     return {
         "rated_deflection": deflection,
         "press_stiffness": _flat(press.rated_force) / deflection,
         "rated_slope": slope,
         "tilt_stiffness": _flat(press.rated_force * press.rated_offset) / slope,
-        "parallelism": _more(np.max(np.abs(balance.moved[..., free, SLIDER + 2]), axis=-1)) * _flat(press.face_width),
-        "squareness": _more(np.ptp(face, axis=-1)) / np.ptp(np.asarray(half.face)[..., free], axis=-1),
-        "total_clearance": clearance(press, half)[..., 0],
+        "parallelism": _more(np.max(np.abs(leaning), axis=-1)) * _flat(press.face_width),
+        "squareness": _more(np.ptp(aside, axis=-1)) / np.ptp(face[..., free], axis=-1),
     }
 
 

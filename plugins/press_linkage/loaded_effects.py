@@ -74,26 +74,29 @@ EFFECTS: list[Effect[LoadedPress, LoadedAnswers]] = [
     Effect("worn_platform_guides", on_inputs=worn_platform_guides,
            unknowns=[Unknown("wear", 0, 2000, "um", "more clearance of the platform to each side")],
            looks_like="more tilt under a force beside the middle, since the platform tilts with it until its guides "
-                      "hold it",
+                      "hold it; platform_tilt, measured too, shows it by far the best",
            remedy="Set or renew the guides of the platform.",
            why="the platform is guided with more clearance than drawn, or not against tilting",
            source="guides as springs with a gap"),
     Effect("soft_frame", on_inputs=soft_frame,
            unknowns=[Unknown("loss", 0, 95, "%", "share of the stiffness at the ground joints that is missing")],
            looks_like="the slider gives way more, in proportion to the force, and tilts more under one beside the "
-                      "middle",
+                      "middle; so it does with soft joints, until gauges at both ground joints, ground_rise_1 and "
+                      "ground_rise_2, show the frame, and with a frame built softer, until its stiffness is known",
            remedy="Tighten the tie rods and look for cracks at the bearings of the upper knee links.",
            why="tie rods have lost their preload, or the frame is cracked at a bearing",
            source="frame and link as springs in series"),
     Effect("warm_links", on_inputs=warm_links,
            unknowns=[Unknown("rise", -30, 60, "K", "of links, platform and slider")],
-           looks_like="the slider sits lower at any force; no tilt",
+           looks_like="the slider sits lower at any force; no tilt; near the bottom dead centre a frame that cools "
+                      "draws the same curve, over the whole stroke it does not",
            remedy="Warm the press up before its height is set, or correct it by the temperature of the links.",
            why="friction heats the joints and links of a press at work",
            source="linear expansion"),
     Effect("warm_frame", on_inputs=warm_frame,
            unknowns=[Unknown("rise", -30, 60, "K", "of the frame with columns and bolster")],
-           looks_like="the slider sits higher over the bolster at any force; no tilt",
+           looks_like="the slider sits higher over the bolster at any force; no tilt; near the bottom dead centre "
+                      "links that cool draw the same curve, over the whole stroke they do not",
            remedy="Set the height with the frame at the temperature of the shift.",
            why="drive and hydraulics warm the frame, or the hall is warmer than when the press was set",
            source="linear expansion"),

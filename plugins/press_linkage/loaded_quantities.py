@@ -122,6 +122,8 @@ class LoadedAnswers:
     lower_guide_force: Float = over_stroke("kN", "G_u", "slider on its lower guides, positive towards side 1")
     platform_guide_upper: Float = over_stroke("kN", "P_o", "platform on its upper guides, positive towards side 1")
     platform_guide_lower: Float = over_stroke("kN", "P_u", "platform on its lower guides, positive towards side 1")
+    ground_rise_1: Float = over_stroke("um", "w_1", "ground joint M of side 1 pushed up against the frame around it")
+    ground_rise_2: Float = over_stroke("um", "w_2", "ground joint M of side 2 pushed up against the frame around it")
     lower_link_1: Float = over_stroke("kN", "N_h1", "lower knee link of side 1, positive pressed")
     lower_link_2: Float = over_stroke("kN", "N_h2", "lower knee link of side 2, positive pressed")
     upper_link_1: Float = over_stroke("kN", "N_m1", "upper knee link of side 1, positive pressed")

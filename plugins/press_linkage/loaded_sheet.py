@@ -94,8 +94,9 @@ SECTIONS = [
         "Acceptance without force",
         "parallelism", "squareness", "total_clearance",
         text="At the crank angles of the test, with weights and counterbalance alone, as dial gauges on the bolster "
-        "would show it. JIS B 6402 and ISO 6899 name these tests; their permitted values are bought with the standard "
-        "and depend on class and size. Those in the inputs say where they come from: state the ones that were ordered.",
+        "would show it; the total clearance is that of the joints alone, at the bottom dead centre. JIS B 6402 and "
+        "ISO 6899 name these tests; their permitted values are bought with the standard and depend on class and size. "
+        "Those in the inputs say where they come from: state the ones that were ordered.",
     ),
     Section(
         "Acceptance under load",
@@ -106,7 +107,7 @@ SECTIONS = [
     Section(
         "Over the stroke",
         "time", "crank_angle", "press_force", "slider_position", "deflection", "slider_tilt", "slider_shift",
-        "platform_tilt", "largest_tilt",
+        "platform_tilt", "ground_rise_1", "ground_rise_2", "largest_tilt",
         text="Force, weights, counterbalance and inertia act on the press with its play, its errors and its "
         "temperature; the potential energy is least. Deflection and tilt are those against the bolster.",
         blocks=giving_way,

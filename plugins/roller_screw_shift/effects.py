@@ -277,14 +277,15 @@ EFFECTS: list[Effect[Pair, Meshing]] = [
            source="ISO 6336-3: rim factor Y_B = 1.15 ln(8.324 m/s_R) of an internal gear, 1.75 < s_R/m < 3.5"),
     Effect("soft_threads", on_inputs=soft_threads,
            unknowns=[Unknown("compliance", 0, 100, "um/kN", "of one thread on one side of a roller; 2 to 20")],
-           looks_like="the screw gives way more, in proportion to the load, where contacts alone stiffen with it",
+           looks_like="the screw gives way more, in proportion to the load, where contacts alone stiffen with it; "
+                      "where that is little, like a gain of the gauge",
            remedy="Keep the effect on, and rate stiffness and sharing with it; the deflection measured is then met.",
            why="threads bend and shear under their load, which contacts and bars leave out",
            source="a spring behind every Hertzian contact; Yamamoto has its parts for a thread that touches all round"),
     Effect("roller_pitch_error", on_inputs=roller_pitch_error,
            unknowns=[Unknown("deviation", 0, 5, "um", "pitch of the rollers over that of screw and nut; to 1")],
-           looks_like="the screw gives way much more under small loads, until all threads touch; rollers of "
-                      "too small a pitch look nearly alike",
+           looks_like="the screw gives way much more under small loads, until all threads touch, and from there on "
+                      "by one length more, like an offset of the gauge; rollers of too small a pitch look nearly alike",
            remedy="Fit rollers of the pitch of screw and nut, or rate the life with the effect on; the screw is then "
                   "stiff from small loads on.",
            why="the pitch of the rollers is not that of screw and nut, so that only threads at their ends touch",

@@ -798,7 +798,7 @@ class ShiftChoice:
     robust_contact_ratio: Float = found("", symbol="epsilon_P", note="contact ratio there, of the nominal pair",
                                         method=HELD_BY)  # fmt: skip
     kept_at_robust: Float = found("%", symbol="n_P", note="screws of that shift that keep every limit",
-                                  method=DRAWN)  # fmt: skip
+                                  method=f"{DRAWN}, the same by which the shift was chosen")  # fmt: skip
     gentlest_shift: Float = found("", symbol="x_E,s", note="shift of the roller at which the largest sliding on the "
                                   "path is least", method="dense grid")  # fmt: skip
     gentlest_sliding: Float = found("", symbol="eta_s", note="that sliding", method="dense grid")

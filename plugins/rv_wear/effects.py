@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_geometry.mesh_load import wave as harmonic
+from rv_wear.play import pin_circle_offset, stops_of, toothing_offset
 from rv_wear.quantities import Reducer, Wear
 from truing import Condition, Effect, Float, Unknown
 
@@ -38,9 +40,11 @@ DIRECTION = Condition(
 
 # What changes the clearance between disc, pins and bearings, and no flank: heat, runout, wear of the bearings
 
+OffsetArray = NDArray[np.complex128]
+"""Offsets x + iy (n,) or () in m."""
+
 RATED_TORQUE = 3136.0  # N*m, of the paper
 MILLION = 1e6
-NOTHING = 1e-15  # m
 
 
 def thermal_clearance(
@@ -59,23 +63,40 @@ def thermal_clearance(
 
 
 def runout(reducer: Reducer, *, offset: Float, direction: Float, crank_angle: Float) -> Reducer:
-    """The circle of the pins is off the axis of the output: of two opposite discs each stops one end of the play.
-
-    Across the crank the offset turns one disc forward and the other back. Along the crank it moves the first contact
-    away from the longest arm, which takes less. Equation R2 of the theory page; two discs, their cranks opposite.
-    """
-    across, along = (np.abs(offset * part(direction - crank_angle)) for part in (np.sin, np.cos))
-    curve = _curve(reducer)
-    place = along / np.maximum(np.maximum(2.0 * curve, along), NOTHING)
-    return replace(reducer, runout_gap=reducer.runout_gap + 2.0 * (across + along * place - curve * place**2))
+    """The circle of the pins is off the axis of the output: of two opposite discs each stops one end of the play."""
+    stands = pin_circle_offset(reducer)
+    moved = stands + offset * np.exp(1j * direction)
+    off = replace(reducer, pin_circle_x=moved.real, pin_circle_y=moved.imag)
+    return _taken(reducer, off, crank_angle, stands, moved)
 
 
-def _curve(reducer: Reducer) -> Float:
-    """How fast the gap grows on both sides of the longest arm, m: over the square of (cos psi - K_1) / sin psi."""
-    root = np.sqrt(1.0 - (reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius) ** 2)
-    thinner = reducer.equidistant_modification + reducer.equidistant_error + 0.5 * reducer.pin_fit_clearance
-    outward = reducer.shift_modification + reducer.shift_error - reducer.pin_circle_error
-    return np.maximum(root * (thinner - reducer.pin_radius_error) - outward, 0.0) / (2.0 * root)
+def disc_phase(reducer: Reducer, *, phase: Float, crank_angle: Float) -> Reducer:
+    """The crank of the second disc is not half a turn ahead: one disc stops each end of the play before the other."""
+    off = replace(reducer, disc_phase_error=reducer.disc_phase_error + phase)
+    pins = pin_circle_offset(reducer)
+    return _taken(reducer, off, crank_angle, pins, pins)
+
+
+def toothing_runout(
+    reducer: Reducer, *, offset: Float, direction: Float, crank_angle: Float, output_angle: Float
+) -> Reducer:
+    """The toothing of the discs is off the bores that hold them, alike in both: as pins off centre that turn along."""
+    stands = toothing_offset(reducer)
+    moved = stands + offset * np.exp(1j * direction)
+    off = replace(reducer, toothing_x=moved.real, toothing_y=moved.imag)
+    pins, turned = pin_circle_offset(reducer), np.exp(1j * output_angle)
+    return _taken(reducer, off, crank_angle, pins - stands * turned, pins - moved * turned)
+
+
+def _taken(reducer: Reducer, off: Reducer, crank: Float, before: OffsetArray, after: OffsetArray) -> Reducer:
+    """What parts off centre take from the play at this crank angle, as a gap; equation R2 of the theory page."""
+    stops = stops_of(reducer, crank)
+    fair, left = (
+        stops.play(offset, reducer.eccentricity * each.disc_phase_error)
+        for each, offset in ((reducer, before), (off, after))
+    )
+    gap = reducer.eccentricity * (reducer.pin_count - 1) * (fair - left)
+    return replace(off, runout_gap=reducer.runout_gap + (gap if np.ndim(crank) or len(gap) > 1 else gap[0]))
 
 
 def bearing_wear(reducer: Reducer, *, wear: Float) -> Reducer:
@@ -175,8 +196,9 @@ def duty_share(reducer: Reducer, *, idle: Float) -> Reducer:
     return replace(reducer, loaded_share=reducer.loaded_share * (1.0 - idle))
 
 
-# They act in the order declared: first what changes the clearance, then what changes the wear and what is felt of it,
-# then what is in the reading alone. A new effect is a function beside the others and one more entry in EFFECTS.
+# They act in the order declared: first what changes the clearance (toothing_runout after runout and disc_phase, as it
+# alone knows where the output stands), then what changes the wear and what is felt of it, then what is in the reading
+# alone. A new effect is a function beside the others and one more entry in EFFECTS.
 
 REGRESSION = (
     "Janakiraman, V., Li, S., Kahraman, A., An investigation of the impacts of contact parameters on wear coefficient, "
@@ -204,6 +226,23 @@ EFFECTS: list[Effect[Reducer, Wear]] = [
                   "the crank are gone then.",
            why="the circle of the pins, or the bore of the housing that holds it, is off the axis of the output; two "
                "opposite discs then touch at opposite ends of the play",
+           source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
+    Effect("disc_phase", on_inputs=disc_phase, needs=[CRANK_ANGLE], acts_at_reference=True,
+           unknowns=[Unknown("phase", -60, 60, "arcmin", "of the second crank, beyond half a turn")],
+           looks_like="alone a constant, like an offset of the gauge; beside runout the two dips per turn of the crank "
+                      "become unlike",
+           remedy="Measure the angle between the throws of the crankshafts, and replace shafts that are off.",
+           why="both throws of a crankshaft are ground one after the other",
+           source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
+    Effect("toothing_runout", on_inputs=toothing_runout, needs=[CRANK_ANGLE, OUTPUT_ANGLE], acts_at_reference=True,
+           unknowns=[Unknown("offset", -10, 10, "um",
+                             "of the toothing from the bores, mean of both discs; alone either sign looks the same"),
+                     Unknown("direction", 180, 360, "deg", "of the offset, as an output angle")],
+           looks_like="the backlash dips twice per turn of the crank against the disc, so the dips move with the "
+                      "output angle; within one turn of the crank it looks like runout",
+           remedy="Grind the toothing true to the bores for the crank bearings, or measure both discs and mount them "
+                  "with their offsets opposite.",
+           why="the toothing of the discs is off the bores that hold them, and both discs come from one setting",
            source="geometry of two opposite cycloid discs, derived on the theory page of the calculation"),
     Effect("bearing_wear", on_inputs=bearing_wear,
            unknowns=[Unknown("wear", 0, 10, "um",

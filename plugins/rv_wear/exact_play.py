@@ -40,7 +40,7 @@ class ExactAnswers:
                                method=OF_MACHINES, key=True)  # fmt: skip
     worst_share: Float = found("%", symbol="kappa_max", note="largest share of a disc in any machine and position",
                                method="of these machines")  # fmt: skip
-    force_of_both: Float = found("N", symbol="F_x", note="largest force on a pin, both discs together",
+    force_of_both: Float = found("N", symbol="F_x", note="largest force of a disc on a pin, both discs carrying",
                                  method=OF_MACHINES)  # fmt: skip
     error_free: Float = arcmin("TE_0", "error of transmission without load, peak to peak",
                                "where the first tooth touches over the crank; mean of the machines")  # fmt: skip

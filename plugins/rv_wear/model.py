@@ -72,6 +72,10 @@ RV_WEAR = Model(
     published=PUBLISHED,
     findings=FINDINGS,
     cites=LITERATURE,
+    exceptions={
+        "order of effects": "what pins, cranks and toothing off centre take from the play is no sum; toothing_runout "
+        "alone knows where the output stands and acts last of the three, with what the others moved"
+    },
     example=Path(__file__).with_name("example.toml"),
     summary="How far does the cycloid disc of an RV reducer wear, what becomes of its backlash, and which tolerances "
     "and modifications keep it within its limit at the least cost?",

@@ -54,7 +54,7 @@ class LearntReducer(Outcome):
     """The reducer with the wear of a surrogate: what an optimisation or a count asks instead of the model.
 
     A wear coefficient that is larger by a factor wears as if the working time were, and so do the shares of the flanks;
-    everything but the wear is the model's own. Without film, ageing and pitch-point coefficient.
+    everything but the wear is the model's own. Without film and ageing, which know the time otherwise.
     """
 
     emulated: Emulated
@@ -118,10 +118,15 @@ class PaperRoute:
             raise TruingError(f"study '{self.name}': draws = {self.draws}, but at least 2 machines are compared")
 
     def run(self, bench: Bench) -> "Route":
-        """Go the paper's way, then look at what it found. Raises TruingError without a surrogate."""
+        """Go the paper's way, then look at what it found. Raises TruingError without a surrogate, or with a film."""
         emulated = next((each for each in bench.outcomes.values() if isinstance(each, Emulated)), None)
         if emulated is None or "max_wear" not in emulated.of:
             raise TruingError(f"study '{self.name}': no surrogate of max_wear ran before it; list 'surrogate' first")
+        if np.any(np.asarray(bench.inputs.film_factor) > 0.0) or np.any(np.asarray(bench.inputs.ageing_rate) != 0.0):
+            raise TruingError(
+                f"study '{self.name}': with a film or ageing oil a larger wear coefficient is no longer time, and the "
+                "surrogate knows no other; leave the study out, or film_factor and ageing_rate at 0"
+            )
         learnt = LearntReducer(emulated, bench.inputs)
         columns = bench.drawn(self.draws)
         guessed = np.broadcast_to(learnt.predict(columns)["backlash"], (self.draws,))

@@ -18,7 +18,7 @@ from rv_wear.discs import worn_mesh
 from rv_wear.forces import Loads, shared, start_scale
 from rv_wear.geometry import Mesh, Teeth, mesh_of, relative_arm, teeth_of
 from rv_wear.quantities import Reducer
-from truing import Array
+from truing import Array, Float
 
 DISCS = 2
 SHORT_ARM = 0.3  # the loaded zone of the paper's reducer ends at 0.7
@@ -60,17 +60,19 @@ def ideal_parts(reducer: Reducer, time: float = 0.0) -> Parts:
     """
     mesh = replace(mesh_of(reducer), torque=reducer.output_torque)
     pins, alike = reducer.pin_count, np.ones((reducer.pin_count, 1))
+    moved = pin_circle_offset(reducer) * np.exp(-2j * np.pi * np.arange(pins) / pins)[:, None]
+    toothing = toothing_offset(reducer) * np.exp(2j * np.pi / DISCS / (pins - 1) * np.arange(DISCS))[:, None]
     throw = reducer.eccentricity + reducer.eccentricity_error
     angle, wear = _wear(reducer, time)
     return Parts(
         mesh=mesh,
         pin_radius=(reducer.pin_radius + reducer.pin_radius_error - 0.5 * reducer.pin_fit_clearance) * alike,
-        pin_radial=reducer.pin_circle_error * alike,
-        pin_along=0.0 * alike,
+        pin_radial=reducer.pin_circle_error + moved.real,
+        pin_along=moved.imag,
         tooth_along=np.zeros((DISCS, pins - 1, 1)),
         throw=np.full((DISCS, 1), throw),
         phase=np.array([[0.0], [reducer.disc_phase_error]]),
-        offset=np.zeros((DISCS, 1), dtype=complex),
+        offset=toothing,
         ground_pin=np.array([reducer.pin_radius + reducer.equidistant_modification + reducer.equidistant_error]),
         ground_circle=np.array([reducer.pin_circle_radius + reducer.shift_modification + reducer.shift_error]),
         wear_angle=angle,
@@ -103,7 +105,7 @@ def drawn_parts(reducer: Reducer, rng: np.random.Generator, machines: int, time:
         pin_along=alike.pin_along + reducer.pin_position_spread * rng.standard_normal(by_pin),
         pin_radial=alike.pin_radial + reducer.pin_position_spread * rng.standard_normal(by_pin),
         tooth_along=alike.tooth_along + reducer.tooth_pitch_spread * rng.standard_normal(by_tooth),
-        offset=0.5 * reducer.disc_runout * np.exp(1j * around),
+        offset=alike.offset + 0.5 * reducer.disc_runout * np.exp(1j * around),
     )
 
 
@@ -197,6 +199,81 @@ def _gap(parts: Parts, seen: NDArray[np.complex128], foot: Array) -> tuple[Array
     distance = off.real * normal.real + off.imag * normal.imag
     moved = -1j * seen
     return distance, moved.real * normal.real + moved.imag * normal.imag
+
+
+# The same to first order, for a batch of reducers with one crank angle each: what effects ask for again and again
+
+
+def pin_circle_offset(reducer: Reducer) -> NDArray[np.complex128]:
+    """Offset x + iy (n,) or () of the circle of the pins from the axis of the output, m."""
+    return np.asarray(reducer.pin_circle_x + 1j * np.asarray(reducer.pin_circle_y))
+
+
+def toothing_offset(reducer: Reducer) -> NDArray[np.complex128]:
+    """Offset x + iy (n,) or () of the toothing in its disc, as the output turns, mean of both discs, m."""
+    return np.asarray(reducer.toothing_x + 1j * np.asarray(reducer.toothing_y))
+
+
+@dataclass(frozen=True)
+class Stops:
+    """Where pins that are alike stop new discs, to first order, at one crank angle (n,) per reducer: equation R2.
+
+    Lengths in m on the longest ``arm`` (n,): ``way`` (senses, discs or 1, pins, n) until a pin touches, ``lean`` of its
+    normal to the crank over that across it, of the same shape; ``own`` (discs, n) are the angles of the cranks.
+    """
+
+    way: Array
+    lean: Array
+    own: Array
+    arm: Float
+
+    def play(self, offset: NDArray[np.complex128], behind: Float) -> Array:
+        """Play (n,) in rad, with the pins off the toothing by ``offset`` x + iy () or (n,), in the housing.
+
+        ``behind`` (m) is by how much less the second disc turns with its crank. Within 0.004 arcmin of ``play_of``
+        while the offset along the crank and the error of the throw are together smaller than the radial clearance;
+        beyond, a disc wedges at a pin with a short arm.
+        """
+        seen = offset * np.exp(-1j * self.own)  # along the crank of each disc, and across it
+        stop = (self.way + self.lean * seen.real[:, None]).min(axis=2)
+        stop = stop + SENSES * (seen.imag - np.arange(DISCS)[:, None] * behind)
+        return np.asarray(stop.min(axis=1).sum(axis=0) / self.arm)
+
+
+SENSES = np.array([1.0, -1.0])[:, None, None]
+
+
+def stops_of(reducer: Reducer, crank: Float) -> Stops:
+    """Every pin of both discs with its gap over its arm, at crank angles () or (n,)."""
+    count, short_width = reducer.pin_count, reducer.eccentricity * reducer.pin_count / reducer.pin_circle_radius
+    pitch = 2.0 * np.pi / count
+    thinner = reducer.equidistant_modification + reducer.equidistant_error + 0.5 * reducer.pin_fit_clearance
+    thinner = thinner - reducer.pin_radius_error
+    outward = reducer.shift_modification + reducer.shift_error - reducer.pin_circle_error
+    own = np.atleast_1d(crank) + 2.0 * np.pi * np.arange(DISCS)[:, None] / DISCS
+    unlike = DISCS if count % DISCS else 1  # discs among an even number of pins see them at the same phase angles
+    ahead = SENSES * own[:unlike] / pitch
+    first = pitch * (np.ceil(ahead) - ahead)
+    phase = first[:, :, None] + pitch * np.arange(_following(short_width, count))[:, None]
+    cosine = np.cos(phase)
+    sine, distance = np.sqrt(1.0 - cosine**2), np.sqrt(1.0 + short_width**2 - 2.0 * short_width * cosine)
+    sine = np.where(sine >= SHORT_ARM * distance, sine, np.nan)
+    lean = (cosine - short_width) / sine
+    way = (thinner * distance - outward * (1.0 - short_width * cosine)) / sine - reducer.eccentricity_error * lean
+    followed = np.isfinite(way)
+    return Stops(
+        way=np.where(followed, way, np.inf),
+        lean=np.where(followed, lean, 0.0),
+        own=own,
+        arm=reducer.eccentricity * (count - 1),
+    )
+
+
+def _following(short_width: Float, count: int) -> int:
+    """How many pins of one side may stop a disc; behind them the arm is short for every reducer."""
+    angle = 2.0 * np.pi * np.arange(count // 2)[:, None] / count
+    distance = np.sqrt(1.0 + np.square(short_width) - 2.0 * np.atleast_1d(short_width) * np.cos(angle))
+    return int(np.flatnonzero((np.sin(angle) >= SHORT_ARM * distance).any(axis=1))[-1]) + 1
 
 
 # What follows: play, load of the discs and the error of transmission

@@ -197,10 +197,10 @@ TOLD = {
     "counting it means that none of the machines drawn fails; here it is read as 0.999.",
     "Which reading of the optimum comes nearest": "The printed optima wear 3.151 and 3.207 µm, more than the 3.127 "
     "µm of the start. With both modifications free no such optimum can come out: the front then has no radial "
-    "clearance and wears less than the start everywhere (2.40 to 2.62 µm at 95 %). So the paper held the radial "
-    "clearance, as its equation 17 does. With zones up to twice as wide the knees are cheap and wear more (1062 "
+    "clearance and wears less than the start everywhere (2.40 to 2.62 µm at 95 %). So the paper seems to have held the "
+    "radial clearance, as its equation 17 does. With zones up to twice as wide the knees are cheap and wear more (1062 "
     "yuan, 3.228 µm). With zones up to 20 % wider they are 1283 yuan and 3.167 µm, 1295 yuan and 3.222 µm: within "
-    "0.6 % in cost and 0.5 % in wear of all four printed numbers. One number was chosen for four, and Table 4 "
+    "0.7 % in cost and 0.5 % in wear of all four printed numbers. One number was chosen for four, and Table 4 "
     "that would tell is lost.",
     "The cost functions are read as powers": "Their equations are lost and only coefficients are printed. As powers of "
     "the width in millimetres they give 1403 yuan for the zones here (the paper: 1402). Read as plain exponentials "

@@ -29,6 +29,11 @@ def own_error(value: float, symbol: str, note: str, source: str) -> Any:
     return given(value, "um", symbol=symbol, note=note, source=source, at_least=0, at_most=50)
 
 
+def off_centre(symbol: str, note: str) -> Any:
+    """Declare one part of an offset that the exact play reads; equation 21 has ``runout_gap`` for it."""
+    return given(0.0, "um", symbol=symbol, note=f"neutral 0: {note}", at_least=-50, at_most=50)
+
+
 @inputs
 class Reducer:
     """Gearing, load and lubricant, the sixteen error factors, and what is asked of the backlash."""
@@ -97,8 +102,8 @@ class Reducer:
     shift_error: Float = deviation(0.0, "delta Delta r_p", "13: shift modification as ground")
     eccentricity_error: Float = deviation(0.0, "delta e", "14: throw of the crank")
     bearing_clearance: Float = deviation(11.1, "delta_b", "16: clearance of the crank bearings")
-    runout_gap: Float = given(0.0, "um", symbol="delta_R", at_least=0, at_most=LARGEST,
-                              note="neutral 0: gap of both flanks that runout of the pin circle takes")  # fmt: skip
+    runout_gap: Float = given(0.0, "um", symbol="delta_R", at_least=-LARGEST, at_most=LARGEST,
+                              note="neutral 0: gap of both flanks that runout takes where it is read")  # fmt: skip
     # What is each part's own: read by the study of the exact play
     pin_position_spread: Float = own_error(0.6, "sigma_t", "scatter of the place of a single pin, both ways",
                                            "one worst error is printed")  # fmt: skip
@@ -109,6 +114,10 @@ class Reducer:
                                           "a sixth of zone 11")  # fmt: skip
     disc_phase_error: Float = given(0.0, "arcmin", symbol="delta_phi", at_least=-600, at_most=600,
                                     note="crank of the second disc ahead of half a turn")  # fmt: skip
+    pin_circle_x: Float = off_centre("x_p", "circle of the pins off the axis of the output, along crank angle 0")
+    pin_circle_y: Float = off_centre("y_p", "circle of the pins off the axis of the output, along crank angle 90 deg")
+    toothing_x: Float = off_centre("x_c", "toothing off the centre of its disc, mean of both, along output angle 0")
+    toothing_y: Float = off_centre("y_c", "toothing off the centre of its disc, mean of both, 90 deg from there")
     # What is asked
     permitted_backlash: Float = given(1.0, "arcmin", symbol="Delta phi_per", note="permitted backlash", source=PAPER,
                                       above=0)  # fmt: skip

@@ -70,8 +70,11 @@ class LoadSpectrum:
     """Wear both flanks under ``loads`` that change quickly against the life, and find the life of ``draws`` machines.
 
     A load is written as torque, speed, share of the hours and sense. The shares add up to the hours in which the
-    reducer works; what is left of 100 % it stands still. Without any load the reducer turns as the inputs say, half of
-    the time each way.
+    reducer works; what is left of 100 % it stands still. Without any load the reducer turns as the inputs say, with the
+    hours of each sense by ``reversing``, or half of them each way without it.
+
+    A machine wears as the nominal one, faster or slower by its wear coefficient. That is exact for the tolerances of
+    the model without a film; what effects scatter otherwise than by this coefficient, the life does not see.
     """
 
     loads: tuple[str, ...] = ()
@@ -100,8 +103,9 @@ class LoadSpectrum:
 
 
 def _as_stated(reducer: Reducer) -> tuple[LoadBlock, ...]:
-    torque, speed = float(reducer.output_torque), float(reducer.output_speed)
-    return tuple(LoadBlock(torque, speed, 0.5, sense) for sense in (1, -1))
+    torque, speed, share = float(reducer.output_torque), float(reducer.output_speed), reducer.reversing
+    back = 0.5 if share is None or np.isnan(share) else 0.5 * float(share)
+    return tuple(LoadBlock(torque, speed, part, sense) for part, sense in ((1.0 - back, 1), (back, -1)) if part > 0.0)
 
 
 # Wear of one flank: all loads that press on it wear the one profile, each with the forces that it has there
@@ -131,6 +135,8 @@ def flank_history(reducer: Reducer, blocks: Sequence[LoadBlock], sense: int, unt
     depth = [0.0]
     while time[-1] < until and len(time) < MOST_STEPS:
         rate = (rate_of(loads.force) * weight).sum(axis=-1)
+        if not rate.any():  # a film carries everywhere
+            return FlankHistory(np.array([*time, until]), np.array([*depth, depth[-1]]))
         step = threshold / float(rate.max())
         wear = wear + rate * step
         time.append(time[-1] + step)

@@ -57,7 +57,8 @@ REDUCERS: dict[str, dict[str, float]] = {
     "wear_temperature": {"softening": 0.006}, "film_lubrication": {"film_factor": 140}, "pin_rolling": {"rolling": 0.5},
     "pin_wear": {"ratio": 0.7}, "lost_motion_share": {"loss": 0.6}, "bearing_wear": {"wear": 0.6},
     "wind_up": {"compliance": 1.0}, "stiffening": {"twist": 0.2, "torque_scale": 120},
-    "runout": {"offset": 1.2, "direction": 310}, "pin_pass_ripple": {"pin_cosine": 0.03, "pin_sine": -0.02},
+    "runout": {"offset": 1.2, "direction": 310}, "toothing_runout": {"offset": 1.5, "direction": 230},
+    "disc_phase": {"phase": 6}, "pin_pass_ripple": {"pin_cosine": 0.03, "pin_sine": -0.02},
     "friction_hysteresis": {"lag": 0.02}, "lubricant_ageing": {"rate": 0.3}, "load_exponent": {"exponent": 0.5},
     "duty_share": {"idle": 0.45},
 }  # fmt: skip

@@ -139,9 +139,33 @@ def settled(machine: LoadedMachine, angle: float, force: float) -> Array:
     return moved
 
 
+def ground_rise(machine: LoadedMachine, angle: float, moved: Array, side: int) -> float:
+    """How far the upper link of side 0 or 1 pushes the frame at M up."""
+    p, at = machine.press, {name: value[:, 0] for name, value in joints(np.array([angle]), machine.press).items()}
+    sign, size = SIDES[side][1], p["upper_knee_length"]
+    knee = np.array([sign * at["G"][0] + moved[4 + 2 * side], at["G"][1] + moved[5 + 2 * side]])
+    ground = (1.0 + machine.frame) * np.array([sign * at["M"][0], at["M"][1]])
+    line = np.array([at["G"][0] - at["M"][0], at["G"][1] - at["M"][1]]) / size
+    soft = size / machine.bar + 2.0 / machine.joint + line**2 @ (1.0 / np.array(machine.ground))
+    longer = np.hypot(*(knee - ground)) - size * (1.0 + machine.warm) - machine.longer.get(f"upper_{side + 1}", 0.0)
+    play = 2.0 * machine.play
+    pulls = FILMS[-1] * longer + (1.0 - FILMS[-1]) * (longer - np.clip(longer, -play, play))
+    return float(-pulls / soft * line[1] / machine.ground[1])
+
+
 def shown(machine: LoadedMachine, angle: Array, force: Array) -> dict[str, Array]:
     """What gauges between slider and bolster show over crank angles and forces."""
     places = np.array([settled(machine, at, load) for at, load in zip(angle, force, strict=True)])
     stiffness, apart = machine.columns
     lift = -places[:, 12] + force / stiffness + machine.frame * machine.bolster
-    return {"deflection": lift, "slider_tilt": places[:, 13] - force * machine.offset / (stiffness * apart**2)}
+    return {
+        "deflection": lift,
+        "slider_tilt": places[:, 13] - force * machine.offset / (stiffness * apart**2),
+        "platform_tilt": places[:, 10],
+        **{
+            f"ground_rise_{side + 1}": np.array(
+                [ground_rise(machine, at, place, side) for at, place in zip(angle, places, strict=True)]
+            )
+            for side, _ in SIDES
+        },
+    }

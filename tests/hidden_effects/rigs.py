@@ -196,3 +196,16 @@ def demand_named(
             continue
         assert all(names & curve for curve in curves), names
         assert len(names) == len(curves), names
+
+
+def demand_first(document: Mapping[str, Any], effect: str) -> bool:
+    """Ask that an effect alone explains best, and every other explanation has more beside it; whether it is alone.
+
+    What noise draws beside it is now and then not excluded: that is asked of many records together.
+    """
+    explanations = document["explanations"]
+    assert explanations[0] == [effect]
+    assert all(effect in names for names in explanations), explanations
+    assert [(cause["effect"], cause["same_as"]) for cause in document["causes"]] == [(effect, [])]
+    assert document["remainder"] is None
+    return document["verdict"] == "named"

@@ -27,6 +27,7 @@ SHORT = THROW * PINS / CIRCLE
 ROOT = sqrt(1 - SHORT**2)
 LONGEST = THROW * TEETH
 MINUTE = pi / 10800
+UNLIKE = np.array([0.8e-3, -0.5e-3])  # half of what the toothings of the two discs differ by, mm
 PHASES = 12
 STEP = 0.1e-3
 
@@ -206,9 +207,18 @@ def worn(rows: Rows, off: Mapping[str, float], hidden: Hidden) -> tuple[Array, A
     return deepest, both
 
 
+def off_centre(hidden: Hidden, effect: str) -> Array:
+    """The offset (x, y) of an effect, mm."""
+    towards = np.radians(of(hidden, effect, "direction"))
+    return of(hidden, effect, "offset") * 1e-3 * np.array([np.cos(towards), np.sin(towards)])
+
+
 def moved_ends(rows: Rows, hidden: Hidden, size: Mapping[str, float]) -> Array:
-    """Play at the output, rad, that heat of housing and discs and an offset of the pins give, by exact geometry."""
-    if not hidden.keys() & {"thermal_clearance", "runout"}:
+    """Play at the output, rad, that heat, an offset of the pins or of both toothings give, by exact geometry.
+
+    The toothings of the two discs differ by ``UNLIKE``, which turns them against one another and takes no play.
+    """
+    if not hidden.keys() & {"thermal_clearance", "runout", "toothing_runout", "disc_phase"}:
         return np.zeros(len(rows))
     strain = of(hidden, "thermal_clearance", "expansion") * 1e-6
     outer = (1 + strain * (rows.housing_temperature - 20))[:, None, None]
@@ -217,9 +227,12 @@ def moved_ends(rows: Rows, hidden: Hidden, size: Mapping[str, float]) -> Array:
     ground = CIRCLE + SHIFT + size["shift_error"], PIN + EQUIDISTANT + size["equidistant_error"]
     cold = Mesh(circle, pin, *ground, THROW, THROW)
     warm = Mesh(circle * outer, pin * outer, ground[0] * inner, ground[1] * inner, THROW * inner, THROW * inner)
-    offset, towards = of(hidden, "runout", "offset") * 1e-3, np.radians(of(hidden, "runout", "direction"))
-    crank = np.radians(rows.crank_angle)
-    ends = ends_of_play(warm, crank, (offset * np.cos(towards), offset * np.sin(towards)))
+    crank = -TEETH * np.radians(rows.output_angle)
+    pins, toothing = off_centre(hidden, "runout"), off_centre(hidden, "toothing_runout")
+    unlike = UNLIKE * ("toothing_runout" in hidden)
+    ahead = of(hidden, "disc_phase", "phase") * MINUTE
+    bores = toothing + np.stack([unlike, -unlike])
+    ends = ends_of_play(warm, crank, (pins[0], pins[1]), toothing=bores, ahead=ahead)
     return np.asarray((ends - ends_of_play(cold, crank)).sum(axis=0))
 
 
@@ -276,8 +289,11 @@ def machine(rng: np.random.Generator) -> Mapping[str, float]:
 
 
 def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
-    """Rows in the order of the clock. Endurance: one set of discs at the rating; fleet: four sets, each at its own."""
-    sets = {"endurance": 1, "fleet": 4}[design]
+    """Rows in the order of the clock. Endurance: one set of discs at the rating; fleet: four sets, each at its own.
+
+    One turn: as endurance, and always read within the same turn of the crank.
+    """
+    sets = {"endurance": 1, "one_turn": 1, "fleet": 4}[design]
     set_of = np.sort(np.arange(count) % sets)
     hours = LIFE * np.concatenate([np.sort(rng.random(int(np.sum(set_of == one))) ** 1.5) for one in range(sets)])
     hours[0] = 0.0
@@ -287,6 +303,13 @@ def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
         return np.asarray(values[set_of])
 
     warm = rng.uniform(20, 45, count)
+    crank = np.random.default_rng(count).uniform(0, 360, count)
+
+    def within_turns(crank: Array) -> Array:
+        """Output angles at which the crank stands so, in any of its turns that the design allows."""
+        turns = np.floor(TEETH * rng.uniform(0, 1, count)) * (design != "one_turn")
+        return np.asarray((-(crank + 360 * turns) / TEETH) % 360)
+
     return Rows(
         time=hours + LIFE * set_of * 1.02,
         working_time=hours,
@@ -295,8 +318,8 @@ def measured(design: str, count: int, rng: np.random.Generator) -> Rows:
         oil_temperature=by_set(35, 60, 47.0),
         housing_temperature=warm,
         disc_temperature=warm + rng.uniform(-2, 8, count),
-        output_angle=rng.uniform(0, 360, count),
-        crank_angle=np.random.default_rng(count).uniform(0, 360, count),
+        output_angle=within_turns(crank),
+        crank_angle=crank,
         measuring_torque=rng.uniform(0, 300, count),
         direction=rng.choice([-1.0, 1.0], count),
     )

@@ -27,16 +27,32 @@ class Mesh:
     pins: int = 40
 
 
-def ends_of_play(mesh: Mesh, crank_angle: Array, offset: tuple[float, float] = (0.0, 0.0), discs: int = 2) -> Array:
+def ends_of_play(
+    mesh: Mesh,
+    crank_angle: Array,
+    offset: tuple[float, float] = (0.0, 0.0),
+    discs: int = 2,
+    *,
+    toothing: Array | None = None,
+    ahead: float = 0.0,
+) -> Array:
     """How far the output can be turned forward and back, (2, n), at crank angles (n,): to the first pin of any disc.
 
-    The circle of the pins is off by ``offset`` (x, y); the cranks of the discs are evenly spread.
+    The circle of the pins is off by ``offset`` (x, y); the cranks of the discs are evenly spread. The toothing of each
+    disc is off its bores by a row of ``toothing`` (discs, 2), in the frame of the output, which stands at minus the
+    crank angle over the teeth: there the angles of the crank go on over its turns. The last crank leads by ``ahead``.
     """
     crank = (crank_angle[:, None] + 2 * np.pi * np.arange(discs) / discs)[:, :, None]
     on_circle = (2 * np.pi * np.arange(mesh.pins) / mesh.pins)[None, None, :]
     turned = np.broadcast_to(-crank / (mesh.pins - 1), np.broadcast_shapes(crank.shape, on_circle.shape))
-    x = mesh.circle * np.cos(on_circle) + offset[0] - mesh.throw * np.cos(crank)
-    y = mesh.circle * np.sin(on_circle) + offset[1] - mesh.throw * np.sin(crank)
+    throw = crank + ahead * (np.arange(discs) == discs - 1)[None, :, None]
+    x = mesh.circle * np.cos(on_circle) + offset[0] - mesh.throw * np.cos(throw)
+    y = mesh.circle * np.sin(on_circle) + offset[1] - mesh.throw * np.sin(throw)
+    if toothing is not None:
+        output = (-crank_angle / (mesh.pins - 1))[:, None, None]
+        bore_x, bore_y = toothing[None, :, 0, None], toothing[None, :, 1, None]
+        x = x - (np.cos(output) * bore_x - np.sin(output) * bore_y)
+        y = y - (np.sin(output) * bore_x + np.cos(output) * bore_y)
     step = 1e-6
     here, there = _gap(mesh, x, y, on_circle, turned), _gap(mesh, x, y, on_circle, turned + step)
     slope = (there - here) / step

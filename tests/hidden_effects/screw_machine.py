@@ -321,7 +321,12 @@ UNIT = {
     BACKLASH: "um",
 }
 NOISE = {DEFLECTION: 0.1, ROLLER: 1.5, RING: 2.0, ERROR: 0.5, WEAR: 0.1, AXIAL: 2.0, TORQUE: 5e-4, BACKLASH: 0.4}
-LOADS: Mapping[str, tuple[float, float]] = {"bench": (2.0, 20.0), "loaded": (12.0, 20.0), "endurance": (5.0, 20.0)}
+LOADS: Mapping[str, tuple[float, float]] = {
+    "bench": (2.0, 20.0),
+    "loaded": (12.0, 20.0),
+    "endurance": (5.0, 20.0),
+    "light": (0.02, 20.0),
+}
 
 
 def machine(rng: np.random.Generator) -> Mapping[str, float]:

@@ -10,7 +10,7 @@ from truing import Kernel
 OFFERS = Kernel.installed(strict=True).offers
 PAGES = Path(__file__).parents[2] / "docs" / "explanation"
 EFFECTS = {
-    "press_linkage": 11, "roller_screw_shift": 13, "rv_gearing": 18, "rv_wear": 16, "harmonic_fractal": 20,
+    "press_linkage": 11, "roller_screw_shift": 13, "rv_gearing": 18, "rv_wear": 18, "harmonic_fractal": 20,
     "press_linkage.motion": 6, "press_linkage.loaded": 8,
 }  # fmt: skip
 """How many effects each calculation has."""

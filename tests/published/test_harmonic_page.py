@@ -10,22 +10,24 @@ import pytest
 from scipy.special import gamma
 
 from harmonic_fractal.calculation import TABLE, harmonic_fractal, polyline_of
-from harmonic_fractal.contact import Rough, patch_rms
+from harmonic_fractal.contact import Rough, contact_of, equivalent_modulus, patch_rms, pressed
 from harmonic_fractal.estimate import noise_fit, straight_fit
 from harmonic_fractal.flank import read_flank
-from harmonic_fractal.generators import Waves, brownian_profiles, profile_sum
+from harmonic_fractal.generators import Waves, brownian_profiles, brownian_surface, profile_sum
 from harmonic_fractal.micro import domain_factor
 from harmonic_fractal.model import HARMONIC_FRACTAL
-from harmonic_fractal.pressed import PressedFlanks
+from harmonic_fractal.pressed import LEAST, MOST, Compared, PressedFlanks, press, slope_of
 from harmonic_fractal.quantities import Drive
 from harmonic_fractal.structure import log_roughness_of, structure_function, structure_sums
 from harmonic_fractal.surface import without_line
 from pages import EXPLAINED, Page
-from published.test_harmonic_printed import pieces
+from published.test_harmonic_printed import default_offer, pieces
 from shared import TESTS
+from truing.published import compare_published
 
 SURFACES = TESTS / "data" / "surfaces"
 PAGE = Page("harmonic_fractal")
+STEEL = float(equivalent_modulus(Drive()))
 DIMENSIONS = (1.2, 1.4, 1.5, 1.6, 1.8)
 TABLES = "areal over profile"
 
@@ -174,27 +176,96 @@ def test_the_interferogram_agrees_with_its_windows() -> None:
     PAGE.says(f"agrees ({found.window_disagreement:.3f} apart, {found.window_sds:.1f} standard deviations)")
 
 
-def test_measured_heights_are_pressed() -> None:
-    pytest.importorskip("ContactMechanics")
-    pressing = Drive(surface=read_flank(SURFACES / "matrix-4.txt", **PHASE_MAP))
-    found = PressedFlanks().run(SimpleNamespace(inputs=pressing))  # type: ignore[arg-type]
+def pressed_row(found: Compared, dimension: float) -> list[str]:
+    """What the page says of heights that were pressed."""
     assert found.numbers is not None
-    ratio, scaled = found.fractal / found.numbers.stiffness, found.numbers.between / found.numbers.stiffness
-    scaled = scaled / found.height
-    dimension, load, off, height = PAGE.row("phase map, along y")
-    assert dimension == f"{pressing.surface.used.dimension + 1:.2f}"  # type: ignore[union-attr]
-    assert load == f"{found.numbers.between[-1]:.1f}"
-    assert off == f"{ratio.min():.2f} to {ratio.max():.2f}"
-    assert height == f"{scaled.min():.2f} to {scaled.max():.2f}"
-    title, stiffness, gap = found.blocks()
-    assert "times the stiffness of the measured heights" in title.text  # type: ignore[union-attr]
+    one = found.numbers
+    ratio, scaled = found.fractal / one.stiffness, one.between / one.stiffness / found.height
+    off = " to ".join(f"{value:.2g}" for value in (ratio.min(), ratio.max()))
+    return [f"{dimension:.2f}", f"{one.between[-1]:.2g}", off, f"{scaled.min():.2f} to {scaled.max():.2f}"]
+
+
+PRESSED: list[tuple[str, str, dict[str, Any]]] = [
+    ("phase map, along y", "matrix-4.txt", PHASE_MAP),
+    ("focus variation (refused, fit along x)", "al3d-1.al3d", {}),
+    ("interferogram, 0.28 mm square", "metropro-1.dat", {"rectangle": ["280 um", "280 um"]}),
+]
+
+
+@pytest.mark.parametrize(("name", "file", "options"), PRESSED)
+def test_measured_heights_are_pressed(name: str, file: str, options: dict[str, Any]) -> None:
+    pytest.importorskip("ContactMechanics")
+    flank = read_flank(SURFACES / file, **options)
+    found = PressedFlanks().run(SimpleNamespace(inputs=Drive(surface=flank)))  # type: ignore[arg-type]
+    assert PAGE.row(name) == pressed_row(found, (flank.used or flank.estimates[0]).dimension + 1.0)
+    title, by_height, stiffness, gap = found.blocks()
+    assert ("refused" in title.text) is (flank.used is None)  # type: ignore[union-attr]
+    assert f"{found.by_height:.2g}" in by_height.text  # type: ignore[union-attr]
     assert len(stiffness.rows) == len(gap.rows) - 1 == 5  # type: ignore[union-attr]
+
+
+def test_the_whole_interferogram_is_pressed(full_torture: bool) -> None:
+    """640 by 480 points."""
+    if not full_torture:
+        pytest.skip("half a minute; with --torture=full only")
+    pytest.importorskip("ContactMechanics")
+    flank = read_flank(SURFACES / "metropro-1.dat")
+    assert flank.used is not None
+    found = PressedFlanks().run(SimpleNamespace(inputs=Drive(surface=flank)))  # type: ignore[arg-type]
+    assert PAGE.row("interferogram, whole") == pressed_row(found, flank.used.dimension + 1.0)
+
+
+def test_a_profile_is_compared_by_its_rms_height() -> None:
+    flank = read_flank(SURFACES / "hfm-1.hfm")
+    found = PressedFlanks().run(SimpleNamespace(inputs=Drive(surface=flank)))  # type: ignore[arg-type]
+    assert found.numbers is None
+    assert not found.warnings()
+    PAGE.says(f"Its rms height is {1e9 * found.apart:.0f} nm, and at {found.load:.0f} N", f"$D$ = "
+              f"{flank.estimates[0].dimension + 1:.2f}, makes a pair {found.by_height:.0f} times as stiff")  # fmt: skip
+
+
+@pytest.mark.parametrize("dimension", [1.4, 1.6])
+def test_a_gaussian_patch_has_the_stiffness_of_all_scales_and_not_that_of_the_model(dimension: float) -> None:
+    """F/K is near 0.48 rms heights (Persson; 0.35 to 0.6 on finite patches); the model is stiffer."""
+    pytest.importorskip("ContactMechanics")
+    step = 1e-16
+    heights = brownian_surface(dimension, step, (128, 128), np.random.default_rng(1))
+    level = np.log(step) - (4.0 - 2.0 * dimension) * np.log(SPACING)
+    roughness = float(np.exp(log_roughness_of(level, dimension)))
+    loads = np.geomspace(LEAST, MOST, 6) * STEEL * slope_of(heights, SPACING) * heights.size * SPACING**2
+    one = press(heights, SPACING, STEEL, 3e9, loads)
+    contact = contact_of(Drive(), Rough(dimension=dimension + 1.0, roughness=roughness))
+    found = Compared("pressed", one, np.asarray(pressed(one.between, contact).stiffness), height=float(heights.std()))
+    name = f"{dimension + 1.0:.1f}"
+    shown = PAGE.row(f"Brownian patch of D = {name}, 128 points square")
+    assert shown == [name, *pressed_row(found, dimension + 1.0)[1:]]
+    assert (np.abs(one.between / one.stiffness / heights.std() - 0.48) < 0.12).all()
 
 
 def test_a_whole_drive_and_the_weight_of_its_parts() -> None:
     for size in TABLE:
         name = "20 (two of them chosen)" if size == "20" else size
         assert PAGE.row(name, after="over the catalogue's") == [", ".join(f"{ratio:.2f}" for ratio in pieces(size))]
+
+
+def test_the_balls_of_the_wave_generator_are_calculated() -> None:
+    offer = default_offer()
+    compared = {row.published.name: row for row in compare_published(offer)}
+    without = [row.ratio for name, row in compared.items() if name.endswith("nothing fitted")]
+    others = [compared[f"K_2, size 20, ratio {ratio}, whole drive"].ratio for ratio in (50, 30)]
+    balls = 1e6 * drive(balls=23)["ball_torsion"]
+    inclined = drive(balls=23, pressure_angle=np.radians(30.0))["ball_torsion"] * 1e6 / balls
+    PAGE.says(
+        f"it is {balls:.0f} µrad at 25 N·m",
+        f"misses the fit by a factor of {751.6 / balls:.0f}",
+        f"the drive is {min(without):.1f} to {max(without):.1f} times as stiff",  # type: ignore[type-var]
+        f"change $\\theta_b$ by a factor of {balls / (1e6 * drive(balls=46)['ball_torsion']):.1f} or "
+        f"{balls / (1e6 * drive(balls=23, ball_diameter=8e-3)['ball_torsion']):.1f}, a flank of 30° by {inclined:.1f}",
+        f"$K_2$ of ratio 50 is {others[0]:.2f} and of ratio 30 is {others[1]:.1f} times the printed one",
+    )
+    whole = [row for name, row in compared.items() if name.endswith("above 50, whole drive")]
+    assert [each.published.obtained for each in whole].count("calibrated") == 2
+    PAGE.says(f"{sum(each.matches for each in whole)} of {len(whole)} are within 5 %, two of them chosen")
 
 
 def test_errors_of_dimension_and_roughness_go_together() -> None:

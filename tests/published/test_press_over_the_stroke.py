@@ -84,6 +84,15 @@ def test_the_machines_of_a_press_apart_keep_the_limits_as_often() -> None:
     assert found.costs["dead centre"] < found.costs["stroke"]
 
 
+def test_no_band_is_tighter_than_may_be_bought_and_a_goal_missed_is_said() -> None:
+    """With 0.8 times the bands in force no goal can be had over a stroke; that of the position needs 0.41 times."""
+    setup = replace(default_setup(PRESS_LINKAGE), studies=(OverTheStroke(points=9, draws=4000, tightest=0.8),))
+    found: Any = calculate(setup).outcomes["over_the_stroke"]
+    assert np.min(found.bands["stroke"] / found.bands["in force"]) == pytest.approx(0.8)
+    assert found.chances["stroke"]["position"][1] < GOALS["position"]
+    assert "do not reach the goal of position" in found.shown()[0].text
+
+
 def test_the_theory_page_says_what_the_designs_cost_and_keep() -> None:
     page = (Path(__file__).parents[2] / "docs" / "explanation" / "press_linkage.md").read_text(encoding="utf-8")
     setup = replace(default_setup(PRESS_LINKAGE), studies=(OverTheStroke(),))

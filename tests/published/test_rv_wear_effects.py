@@ -13,6 +13,7 @@ from switched import change, shown
 
 from hidden_effects.rv_play import Mesh, ends_of_play
 from rv_wear.model import RV_WEAR
+from rv_wear.play import ideal_parts, play_of
 
 MINUTE = pi / 10800
 UM, HOUR = 1e-6, 3600.0
@@ -26,27 +27,97 @@ def reducer(**settings: Any) -> Any:
     return RV_WEAR.inputs(**settings)
 
 
+def taken(cranks: Any, pins: Any = (0.0, 0.0), **other: Any) -> Any:
+    """What these parts take from the play, arcmin: every pin against the profile of every disc."""
+    return (ends_of_play(NEW, cranks, pins, **other) - ends_of_play(NEW, cranks)).sum(axis=0) / MINUTE
+
+
+def across(micrometres: float, towards: float) -> Any:
+    """An offset (x, y), mm."""
+    return micrometres * 1e-3 * np.array([np.cos(np.radians(towards)), np.sin(np.radians(towards))])
+
+
 @pytest.mark.parametrize("micrometres", [0.3, 3.0, 8.0])
 @pytest.mark.parametrize("towards", [200.0, 275.0])
 def test_pins_off_centre_take_play_from_two_opposite_discs_twice_per_crank_turn(
     micrometres: float, towards: float
 ) -> None:
-    """Reference: every pin against the profile of every disc. What is left over is that pins are not everywhere.
+    """Reference: every pin against the profile of every disc. What is left over is of second order.
 
-    The nearest one is up to half a pitch beside the longest arm, where the normal leans by 0.07 towards the crank: two
-    ends, 0.040 arcmin per micrometre each. There the gap is wider by 0.08 um: 0.0063 arcmin at both ends, with the
-    offset and without.
+    The shift of 30 um goes 23 um along a path of at least 9 mm radius: 0.03 um, 0.0012 arcmin at each end; with the
+    offset beside it, in the same direction at the worst, its square.
     """
-    x, y = (micrometres * 1e-3 * part(np.radians(towards)) for part in (np.cos, np.sin))
-    exact = (ends_of_play(NEW, CRANKS, (x, y), 2) - ends_of_play(NEW, CRANKS, (0.0, 0.0), 2)).sum(axis=0) / MINUTE
+    exact = taken(CRANKS, across(micrometres, towards))
     off = {"offset": micrometres * UM, "direction": float(np.radians(towards)), "crank_angle": CRANKS}
     found = change(RV_WEAR, "backlash", "runout", **off) / MINUTE
-    assert found == pytest.approx(exact, abs=min(0.0056 * micrometres, 0.0126))
+    assert found == pytest.approx(exact, abs=2 * 0.0012 * (1 + micrometres / 30) ** 2)
     assert np.max(exact) < 0
     assert np.min(exact) == pytest.approx(-0.0801 * micrometres, rel=2e-3)
     waves = np.abs(np.fft.rfft(found)) / len(found)
     assert np.argmax(waves[1:]) + 1 == 2
     assert np.max(waves[1::2]) < 1e-6
+
+
+def test_a_toothing_off_its_bores_turns_with_the_output() -> None:
+    """As pins off centre, but against the disc: over a turn of the output the dips come 80 times, and not 78."""
+    cranks = np.linspace(0, 2 * pi * 39, 39 * 40, endpoint=False)
+    exact = taken(cranks, toothing=np.stack([across(2.0, 250.0)] * 2))
+    found = change(
+        RV_WEAR, "backlash", "toothing_runout", offset=2 * UM, direction=float(np.radians(250)),
+        crank_angle=cranks % (2 * pi), output_angle=-cranks / 39 % (2 * pi),
+    ) / MINUTE  # fmt: skip
+    assert found == pytest.approx(exact, abs=2 * 0.0012)
+    assert np.argmax(np.abs(np.fft.rfft(exact))[1:]) + 1 == 80
+
+
+@pytest.mark.parametrize(("minutes", "lost"), [(-3.0, 3 / 39), (6.0, 6 / 39)])
+def test_a_crank_out_of_phase_takes_a_constant_and_makes_the_dips_unlike(minutes: float, lost: float) -> None:
+    phase = minutes * MINUTE
+    alone = change(RV_WEAR, "backlash", "disc_phase", phase=phase, crank_angle=CRANKS) / MINUTE
+    assert alone == pytest.approx(-lost, abs=1e-9)
+    stands = reducer(pin_circle_x="0.4 um", pin_circle_y="-2.5 um")
+    both = with_effect("disc_phase", stands, phase=phase, crank_angle=CRANKS)["backlash"]
+    found = (both - with_effect("", stands)["backlash"]) / MINUTE
+    pins = (0.4e-3, -2.5e-3)
+    assert found == pytest.approx(taken(CRANKS, pins, ahead=phase) - taken(CRANKS, pins), abs=4 * 0.0012)
+
+
+def test_all_three_together_are_one_machine() -> None:
+    """They act one after another, and what they take together is no sum: it is that of the whole geometry."""
+    cranks = np.linspace(0, 2 * pi * 39, 300)
+    on = {
+        "runout": {"offset": 2 * UM, "direction": 5.2}, "disc_phase": {"phase": 3 * MINUTE},
+        "toothing_runout": {"offset": 1.5 * UM, "direction": 0.9},
+    }  # fmt: skip
+    at = {"crank_angle": cranks % (2 * pi), "output_angle": -cranks / 39 % (2 * pi)}
+    moved = reducer()
+    for name in (name for name in RV_WEAR.effects if name in on):
+        effect = RV_WEAR.effects[name]
+        moved = effect.on_inputs(moved, **on[name], **{need.name: at[need.name] for need in effect.needs})
+    pins, bores = (across(size, float(np.degrees(way))) for size, way in ((2.0, 5.2), (1.5, 0.9)))
+    exact = taken(cranks, pins, toothing=np.stack([bores] * 2), ahead=3 * MINUTE)
+    assert -np.asarray(moved.runout_gap) / ARM / MINUTE == pytest.approx(exact, abs=2 * 0.0012 * (1 + 3.5 / 30) ** 2)
+
+
+OFF = {"offset": np.hypot(2, 1) * UM, "direction": -np.arctan2(1, 2)}  # 2 um along x and -1 um along y
+REACHES = [  # the effect, its unknowns, the inputs that say the same, and the parts of the machine
+    ("runout", OFF, {"pin_circle_x": "2 um", "pin_circle_y": "-1 um"}, {"pins": (2e-3, -1e-3)}),
+    ("toothing_runout", OFF, {"toothing_x": "2 um", "toothing_y": "-1 um"},
+     {"toothing": np.array([[2e-3, -1e-3], [2e-3, -1e-3]])}),
+    ("disc_phase", {"phase": 3 * MINUTE}, {"disc_phase_error": "3 arcmin"}, {"ahead": 3 * MINUTE}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("effect", "unknowns", "inputs", "parts"), REACHES, ids=[case[0] for case in REACHES])
+def test_an_effect_reaches_the_exact_play_at_every_angle(effect: str, unknowns: Any, inputs: Any, parts: Any) -> None:
+    declared = RV_WEAR.effects[effect]
+    moved = declared.on_inputs(reducer(), **unknowns, **{need.name: 0.7 for need in declared.needs})
+    cranks = np.linspace(0, 2 * pi * 39, 60)
+    neutral, ours, stated = (
+        play_of(ideal_parts(each), cranks)[:, 0] / MINUTE for each in (reducer(), moved, reducer(**inputs))
+    )
+    assert ours == pytest.approx(stated, abs=1e-9)
+    assert ours - neutral == pytest.approx(taken(cranks, **parts), abs=1e-4)
 
 
 @pytest.mark.parametrize(("reversing", "minutes"), [(0.0, 0.1254), (0.5, None), (1.0, 0.1557)])

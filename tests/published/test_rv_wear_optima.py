@@ -12,6 +12,7 @@ from rv_wear.calculation import rv_wear
 from rv_wear.model import RV_WEAR
 from rv_wear.optimum import LeastCosts, free_ends, learnt
 from rv_wear.paper_route import PaperRoute, routed
+from rv_wear.published import CHOSEN
 from truing import Kernel, Reliability, TruingError
 from truing.calculation import calculate
 from truing.setup import default_setup
@@ -20,6 +21,7 @@ PAGE = Page("rv_wear")
 OFFER = Kernel.installed(strict=True).offer("rv_wear")
 SURROGATE = next(study for study in RV_WEAR.studies if study.name == "surrogate")
 ARCMIN = np.pi / 10800
+SAID = {"cost": 7e-3, "wear": 5e-3}  # "within 0.7 % of the printed cost and 0.5 % of the printed wear"
 
 
 def calculated(*studies: Any) -> Any:
@@ -74,6 +76,14 @@ def test_a_route_without_a_surrogate_is_refused() -> None:
         calculated(Reliability(draws=10), PaperRoute())
 
 
+def test_a_route_with_ageing_oil_is_refused() -> None:
+    """Twice the coefficient wears as twice the time does only where the oil stays what it is."""
+    quick = replace(SURROGATE, design=20, held_out=10, restarts=0, compare=0, gives=learnt)
+    setup = default_setup(OFFER.model, OFFER.origin).changed({"ageing_rate": 1e-4 / 3600})
+    with pytest.raises(TruingError, match="film or ageing oil"):
+        calculate(replace(setup, studies=(quick, PaperRoute())))
+
+
 @pytest.mark.parametrize("wrong", [{"step": 0.0}, {"clearances": (-1.0,)}, {"clearances": (30.0,)}])
 def test_clearances_that_cannot_be_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(TruingError, match="clearances between 0 and 20 um"):
@@ -86,8 +96,13 @@ def test_what_the_page_says_of_both() -> None:
         f"the front runs from {float(ends.free_wear) * 1e6:.3f} µm on",
         f"its knee is at {float(ends.free_knee_wear) * 1e6:.3f} µm and {float(ends.free_knee_cost):.0f} yuan",
     )
+    PAGE.says(
+        f"within {100 * SAID['cost']:.1f} % of the printed cost and {100 * SAID['wear']:.1f} % of the printed wear"
+    )
     fronts = calculated(LeastCosts(widest=1.2, step=0.25)).outcomes["least_costs"].fronts
-    for front in fronts:
+    for front, (_, _, cost, wear, _) in zip(fronts, CHOSEN, strict=True):
         knee = front.designs[front.knee]
+        assert abs(knee.cost / float(cost) - 1.0) < SAID["cost"]
+        assert abs(knee.wear * 1e6 / float(wear) - 1.0) < SAID["wear"]
         start = f"$R \\ge {front.goal:g}$, zones up to 20 % wider"
         assert PAGE.row(start)[0] == f"{number(knee.wear * 1e6, 3)} µm, {knee.cost:.0f} yuan"

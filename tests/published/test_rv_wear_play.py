@@ -138,7 +138,7 @@ def test_the_worn_play_feels_the_first_pin_and_not_the_deepest_wear() -> None:
     assert (worn - new).max() * ARM * 1e-3 / 2 < 0.25 * depth.max()
 
 
-def test_errors_of_single_pins_average_and_runout_takes_play() -> None:
+def test_runout_of_the_discs_takes_play() -> None:
     rng = np.random.default_rng(4)
     even = replace(REDUCER, disc_runout=0.0)
     off = play.play_of(play.drawn_parts(REDUCER, np.random.default_rng(4), 30), CRANK).mean()

@@ -79,6 +79,19 @@ def test_without_loads_it_is_even_reversing_machine_by_machine() -> None:
     assert float(told["spectrum_reliability"]) == pytest.approx(float(told["accuracy_reliability"]), abs=2e-3)
 
 
+def test_without_loads_the_hours_of_each_flank_are_those_of_reversing() -> None:
+    """Always the same flank: the other never wears, and the backlash feels one flank, as the model itself has it."""
+    told = spectrum((), reversing=0.0).answers
+    assert float(told["wear_forward"]) == pytest.approx(float(told["max_wear"]), rel=1e-3)
+    assert float(told["wear_back"]) == 0.0
+    assert float(told["spectrum_backlash"]) == pytest.approx(float(told["backlash"]), rel=1e-4)
+
+
+def test_a_flank_on_a_film_that_carries_everywhere_does_not_wear() -> None:
+    thick = replace(REDUCER, film_factor=1e9, sliding_factor=1.0)
+    assert flank_history(thick, [read_block("3136 N*m, 15 r/min, 50 %, back")], -1, HOUR).depth.max() == 0.0
+
+
 def test_every_machine_is_at_its_limit_when_its_life_ends() -> None:
     """The life of three machines, found again with the model itself: there the backlash is the permitted one."""
     run = spectrum((), reversing=1.0)

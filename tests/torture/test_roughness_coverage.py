@@ -13,6 +13,7 @@ from scipy.stats import binom
 from harmonic_fractal.contact import Rough, contact_of, pressed
 from harmonic_fractal.estimate import Estimate
 from harmonic_fractal.quantities import Drive
+from harmonic_fractal.uncertainty import interval_about
 from unit.test_harmonic_levelling import estimates, roughness_of
 
 COUNT = 150
@@ -34,13 +35,14 @@ def held(found: list[Estimate], dimension: float) -> dict[str, float]:
     for each in found:
         profile, logarithm = each.resampled.T
         of_pair = pair_of(profile - 1.0, np.exp(logarithm))
-        samples = [profile - 1.0, logarithm, *of_pair]
-        ends = [np.nanpercentile(values, (2.5, 97.5)) for values in samples]
+        at_estimate = pair_of(each.dimension, each.roughness)
+        ends = [each.dimension_interval, tuple(np.log(each.roughness_interval))]
+        ends += [interval_about(float(nominal), values) for nominal, values in zip(at_estimate, of_pair, strict=True)]
         within.append([low <= true <= high for (low, high), true in zip(ends, truth, strict=True)])
     return dict(zip(("D", "G", "K", "a_L"), np.mean(within, axis=0), strict=True))
 
 
-@pytest.mark.parametrize("dimension", [1.3, 1.5, 1.7])
+@pytest.mark.parametrize("dimension", [1.2, 1.3, 1.5, 1.7])
 @pytest.mark.parametrize(("shape", "direction"), CASES)
 def test_intervals_hold_the_truth(shape: tuple[int, int], direction: str, dimension: float, full_torture: bool) -> None:
     if not full_torture:

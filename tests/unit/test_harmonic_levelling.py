@@ -12,7 +12,7 @@ from harmonic_fractal.figures import judged
 from harmonic_fractal.flank import options_of, prepared, read_flank, with_choice
 from harmonic_fractal.generators import brownian_profiles, brownian_surface
 from harmonic_fractal.levelling import Levelling, expected, scatter
-from harmonic_fractal.structure import log_roughness_of
+from harmonic_fractal.structure import log_level_of, log_roughness_of
 from harmonic_fractal.surface import Surface
 
 SPACING, STEP = 0.4e-6, 1e-16
@@ -95,6 +95,31 @@ def test_intervals_hold_the_truth_and_levelling_leaves_no_bias() -> None:
     assert sum(held_roughness) >= len(found) - 4
     stated = np.mean([each.resampled[:, 0].std() for each in found])
     assert 0.7 < stated / better.std() < 1.6
+
+
+def spread_of_level(dimension: float, steps: np.ndarray, levelling: Levelling) -> float:
+    """The standard deviation of mean ln S that the slope leaves open, of patches of this dimension."""
+    x = np.log(steps) - np.log(steps).mean()
+    of_fit = np.stack([x / (x @ x), np.full(len(x), 1.0 / len(x))])
+    (slope, both), (_, level) = of_fit @ scatter(4.0 - 2.0 * dimension, steps, levelling) @ of_fit.T
+    return float(np.sqrt(level - both**2 / slope))
+
+
+def test_draws_of_smoother_surfaces_scatter_as_those_do() -> None:
+    """Among the pairs of one patch those of a smaller D have the larger spread of smoother patches."""
+    levelling = Levelling(((40, 160),), line=True, curved=True)
+    ratios = []
+    for each in estimates(1.35, (40, 160), 8, 31, direction="x"):
+        steps = np.rint(each.lags / SPACING).astype(np.int64)
+        dimensions = each.resampled[:, 0] - 1.0
+        levels = log_level_of(each.resampled[:, 1], dimensions) + (4 - 2 * dimensions) * np.log(each.lags).mean()
+        levels = levels - np.polyval(np.polyfit(dimensions, levels, 2), dimensions)
+        is_low = dimensions < np.median(dimensions)
+        at = [spread_of_level(float(dimensions[part].mean()), steps, levelling) for part in (is_low, ~is_low)]
+        ratios.append((levels[is_low].std() / levels[~is_low].std(), at[0] / at[1]))
+    seen, known = np.mean(np.log(ratios), axis=0)
+    assert known > 0.1
+    assert seen == pytest.approx(known, abs=0.06)
 
 
 def test_bias_is_kept_if_asked_for() -> None:

@@ -16,7 +16,7 @@ from harmonic_fractal.model import HARMONIC_FRACTAL
 from harmonic_fractal.quantities import Drive
 from harmonic_fractal.structure import constant
 from harmonic_fractal.surface import Lines, Surface
-from harmonic_fractal.uncertainty import FLANKS, Propagated, Uncertainty, flank_samples, slopes
+from harmonic_fractal.uncertainty import FLANKS, Propagated, Uncertainty, flank_samples, interval_about, slopes
 from truing import Table, TruingError, Words
 from truing.calculation import Calculation, calculate
 from truing.setup import default_setup
@@ -126,6 +126,18 @@ def test_a_study_that_cannot_be_is_refused(flanks: list[Flank], options: dict[st
     setup = default_setup(HARMONIC_FRACTAL, surface=flanks[0], reference_torque="100 mN*m")
     with pytest.raises(TruingError, match=words):
         calculate(replace(setup, studies=(Uncertainty(**options),)))
+
+
+def test_an_interval_reaches_further_to_the_side_on_which_few_values_lie() -> None:
+    """Of z = -1/2, as Efron's bias correction has it: from the percentile of Phi(-1 - 1.96), 0.154 %, to 97.5 %."""
+    values = np.linspace(0.0, 1.0, 100_001)
+    below = 0.308538  # Phi(-1/2)
+    assert interval_about(0.5, values) == pytest.approx((0.025, 0.975), abs=1e-4)
+    assert interval_about(below, values) == pytest.approx((0.00154, 0.975), abs=1e-4)
+    assert interval_about(1.0 - below, values) == pytest.approx((0.025, 1.0 - 0.00154), abs=1e-4)
+    assert interval_about(-1.0, values)[0] == pytest.approx(0.0, abs=1e-4)
+    assert interval_about(2.0, np.full(5, 2.0)) == (2.0, 2.0)
+    assert np.isnan(interval_about(1.0, np.array([np.nan]))).all()
 
 
 # The tolerance that every other study draws from
