@@ -8,11 +8,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from truing.declare.builtin import may_stand
+from truing.declare.chain import acts_on
 from truing.declare.fields import Axis, Given, InputField, Loaded, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary
 from truing.declare.model import Model
 from truing.declare.published import Published
-from truing.declare.sources import Condition, Tolerance
+from truing.declare.sources import Condition, Effect, Tolerance
 from truing.formulas import symbol_text
 from truing.inputs_file.values import bounds_in_words
 from truing.kernel import Offer
@@ -40,11 +41,11 @@ def description(offer: Offer) -> dict[str, Any]:
         **_motion(model),
         "tolerances": [_tolerance(tolerance) for tolerance in model.tolerances.values()],
         "correlations": [_named(pair, CORRELATION) for pair in model.correlations],
-        "effects": [_effect(effect) for effect in model.effects.values()],
+        "effects": [_effect(model, effect) for effect in model.effects.values()],
         "conditions": [_condition(condition) for condition in model.conditions.values()],
         "built_in": {
-            "effects": [_effect(effect) for effect in built_in if not may_stand(effect)],
-            "where_measured": [_effect(effect) for effect in built_in if may_stand(effect)],
+            "effects": [_effect(model, effect) for effect in built_in if not may_stand(effect)],
+            "where_measured": [_effect(model, effect) for effect in built_in if may_stand(effect)],
             "conditions": [
                 _condition(condition)
                 for name, condition in model.known_conditions.items()
@@ -129,10 +130,10 @@ def _tolerance(tolerance: Tolerance) -> dict[str, Any]:
     }
 
 
-def _effect(effect: Any) -> dict[str, Any]:
+def _effect(model: Model[Any, Any], effect: Effect[Any, Any]) -> dict[str, Any]:
     return {
         "name": effect.name,
-        "acts_on": effect.place,
+        "acts_on": acts_on(model, effect),
         **_named(effect, ("looks_like", "why", "source")),
         "unknowns": [
             {**_named(unknown, UNKNOWN), "amplitude": unknown.is_amplitude, **_named(unknown, ("whole", "along"))}

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from truing.declare.batch import FailedRows, watching
-from truing.declare.chain import chain_of, filled
+from truing.declare.chain import chain_of, filled, in_order_of_calculation
 from truing.declare.fields import Axis, InputKind, read, with_values
 from truing.declare.near_miss import near_miss
 from truing.declare.sources import Unknown
@@ -297,7 +297,7 @@ def _apply(case: Case, columns: Mapping[str, Any], calculate: Callable[[Any], An
     ``calculate`` is the function of the model, or what remembers its results.
     """
     model = case.model
-    switched = [(active, _keywords(active, case, columns)) for active in case.effects]
+    switched = [(active, _keywords(active, case, columns)) for active in _acting_in_order(case)]
     try:
         inputs = _inputs(case, columns)
         for active, keywords in switched:
@@ -333,7 +333,7 @@ def acting_inputs(case: Case) -> Any:
     Those that are taken from other calculations are filled.
     """
     inputs = case.inputs
-    for active in case.effects:
+    for active in _acting_in_order(case):
         if active.effect.place == "inputs":
             inputs = active.effect.function(inputs, **_keywords(active, case, {}))
     return filled(case.model, inputs)
@@ -353,6 +353,10 @@ def taken_values(case: Case) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         acting = acting_inputs(before)
     return {name: float(read(acting, fields[name].path)) for name in open_names}
+
+
+def _acting_in_order(case: Case) -> list[SwitchedOn]:
+    return in_order_of_calculation(case.model, case.effects, lambda active: active.effect)
 
 
 def _keywords(active: SwitchedOn, case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from truing.calculation import Calculation, calculate
-from truing.declare.chain import chain_of, prefix_of
+from truing.declare.chain import acts_on, chain_of, prefix_of
 from truing.declare.correlations import Correlated
 from truing.declare.fields import Axis, Found, ResultField
 from truing.declare.goals import Maximise, Minimise, Require, Vary, prices_in
@@ -257,7 +257,7 @@ def of_effect(setup: Setup, name: str) -> dict[str, Any]:
 
 def _effect_row(setup: Setup, effect: Effect[Any, Any]) -> dict[str, Any]:
     on = any(active.effect.name == effect.name for active in setup.effects)
-    return {"name": effect.name, "acts_on": effect.place, "on": on, "looks_like": effect.looks_like}
+    return {"name": effect.name, "acts_on": acts_on(setup.model, effect), "on": on, "looks_like": effect.looks_like}
 
 
 def _unknowns(setup: Setup, effect: Effect[Any, Any]) -> Iterator[dict[str, Any]]:

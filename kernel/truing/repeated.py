@@ -6,43 +6,26 @@ Effects on results and on readings act after the model, so that rows which diffe
 from __future__ import annotations
 
 import os
-from collections import OrderedDict
-from collections.abc import Mapping
-from dataclasses import dataclass
-from hashlib import blake2b
-from struct import pack
 from time import process_time
 from typing import Any
 
 import numpy as np
 
-from truing.declare.batch import FailedRows, watching
+from truing.declare.batch import FailedRows
+from truing.declare.chain import carried_by
 from truing.declare.fields import read, with_values
 from truing.declare.model import Model
-
-REMEMBERED = 8
-LARGEST = 500_000
-"""So many numbers of results are remembered; a longer record is calculated anew."""
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What a model answered for some rows, and which of them failed."""
-
-    model: Model[Any, Any]
-    results: Any
-    failed: FailedRows
-
-
-_ANSWERS: OrderedDict[bytes, _Known] = OrderedDict()
+from truing.declare.remembered import OF_MODELS, answered_before
 
 
 def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: FailedRows) -> Any:
     """Return the results of a model for rows that come ``repeats`` times, one copy of all behind another.
 
-    It is called for one copy, and not at all where it was called with these inputs before. Where the copies differ it
-    is called for all. What fails is noted in ``failed``.
+    It is called for one copy, and not at all where it was called with these inputs before. Where the copies differ, or
+    effects act inside a chain, it is called for all. What fails is noted in ``failed``.
     """
+    if carried_by(inputs).acting:
+        return model.function(inputs)
     rows = len(failed.codes)
     values = {field.path: read(inputs, field.path) for field in model.input_fields.values()}
     arrays = {path: value for path, value in values.items() if isinstance(value, np.ndarray)}
@@ -54,13 +37,9 @@ def results_of(model: Model[Any, Any], inputs: Any, repeats: int, failed: Failed
     ):
         return model.function(inputs)
     one = {path: value[:count] for path, value in columns.items()}
-    key = _key({**values, **one})
-    known = _ANSWERS.get(key)
-    if known is None or known.model is not model:
-        with watching(count) as own:
-            results = model.function(with_values(inputs, one))
-        known = _Known(model, results, own)
-        _remember(key, known, count)
+    of_one = with_values(inputs, one)
+    results = len(model.own_result_fields)
+    known = answered_before(OF_MODELS, model.function, of_one, {**values, **one}, rows=count, results=results)
     _note(failed, known.failed, repeats)
     flat, fields = model.read_results(known.results), model.own_result_fields
     answers = {name: value for name, value in flat.items() if isinstance(value, np.ndarray) and value.ndim}
@@ -82,11 +61,6 @@ def processor_seconds() -> float:
     return process_time() + sum(os.times()[2:4])
 
 
-def forget() -> None:
-    """Forget every answer: the next call is one of the model itself."""
-    _ANSWERS.clear()
-
-
 def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:
     """Whether a column is one copy of its first rows behind another, values that are not given included."""
     if len(value) == count:
@@ -94,28 +68,6 @@ def _is_repeated(value: np.ndarray[Any, Any], count: int) -> bool:
     copies = value.reshape(-1, count, *value.shape[1:])
     is_same = (copies == copies[0]) | ((copies != copies) & (copies[0] != copies[0]))
     return bool(is_same.all())
-
-
-def _key(values: Mapping[tuple[str, ...], Any]) -> bytes:
-    """Return what tells inputs of one model apart; they come in one order, and each says where it ends."""
-    digest = blake2b(digest_size=16)
-    for value in values.values():
-        if isinstance(value, np.ndarray):
-            digest.update(f"array{value.shape}{value.dtype.str}\0".encode())
-            digest.update(np.ascontiguousarray(value).data)
-        elif isinstance(value, float):
-            digest.update(b"float" + pack("d", value))
-        else:
-            digest.update(f"other{value!r}\0".encode())
-    return digest.digest()
-
-
-def _remember(key: bytes, known: _Known, count: int) -> None:
-    if count * max(len(known.model.own_result_fields), 1) > LARGEST:
-        return
-    _ANSWERS[key] = known
-    if len(_ANSWERS) > REMEMBERED:
-        _ANSWERS.popitem(last=False)
 
 
 def _note(failed: FailedRows, own: FailedRows, repeats: int) -> None:

@@ -1,4 +1,4 @@
-"""The shipped example of a chain: the first stage of a reducer loads its discs, from two inputs files to one sheet."""
+"""The shipped examples of chains, two inputs files and one sheet each: gears load discs, flanks make a mesh stiff."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import truing
 from truing.cli import main
-from truing.evaluate import evaluate
+from truing.evaluate import evaluate, evaluate_rows, taken_values
+from truing.setup import Setup
 
 ARC_MINUTE = math.pi / 180 / 60
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "reducer_chain"
+HARMONIC = EXAMPLE.parent / "harmonic_chain"
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +70,42 @@ def test_the_sheet_has_a_chapter_for_each(run: tuple[dict[str, Any], str]) -> No
     assert titles[at + 1].endswith("(rv_gearing)")
     assert titles[at + 2].endswith("(rv_wear)")
     assert any(head.endswith(" Ratio, efficiency and torque") and ".1 " in head for head in numbered)
+
+
+# The flanks of a harmonic drive give its mesh a stiffness, and the mesh vibrates
+
+
+@pytest.fixture(scope="module")
+def mesh() -> Setup:
+    """The vibration of the shipped example, with what it takes from the drive."""
+    return truing.load("harmonic_fractal.vibration").setup(HARMONIC / "inputs.toml")
+
+
+def test_the_stiffness_of_the_drive_is_that_of_the_mesh_which_vibrates(mesh: Setup) -> None:
+    """The drive alone gives the stiffness; one inertia on a spring gives the frequency. Torque and radius are one."""
+    drive = truing.load("harmonic_fractal").setup(HARMONIC / "drive.toml")
+    stiffness = evaluate(drive).normal_stiffness
+    answers = mesh.model.read_results(evaluate(mesh))
+    assert answers["mesh_stiffness"] == pytest.approx(stiffness, rel=1e-12)
+    lever = 25.4e-3 * math.cos(math.radians(20))
+    frequency = math.sqrt(stiffness * lever**2 / 5e-5) / (2 * math.pi)
+    assert answers["natural_frequency"] == pytest.approx(frequency, rel=1e-12)
+    taken = taken_values(mesh)
+    assert (taken["torque"], taken["pitch_radius"]) == pytest.approx((5.0, 25.4e-3))
+    alone = truing.load("harmonic_fractal.vibration").setup(torque="5 N*m")  # one rough flank on a smooth one
+    assert evaluate(alone).mesh_stiffness > 1.005 * stiffness
+
+
+def test_what_scatters_and_acts_in_the_drive_moves_the_frequency(mesh: Setup) -> None:
+    """The frequency goes with the root of the drive's stiffness, for a hardness that scatters and for an effect on."""
+    model = truing.load("harmonic_fractal")
+    factors = np.array([0.95, 1.05])
+    rows = evaluate_rows(mesh, {"harmonic_fractal_hardness": 3e9 * factors}, 2, wanted=["natural_frequency"])
+    stiffness = [
+        evaluate(model.setup(HARMONIC / "drive.toml", hardness=f"{3 * factor!r} GPa")).normal_stiffness
+        for factor in factors.tolist()
+    ]
+    first, second = rows.results["natural_frequency"]
+    assert second / first == pytest.approx(math.sqrt(stiffness[1] / stiffness[0]), rel=1e-9)
+    assert second / first > 1.0005
+    assert "harmonic_fractal_oil_film" in mesh.model.effects

@@ -85,6 +85,11 @@ def rumble(_: Motor, base: Turning, *, size: Float) -> Turning:
     return replace(base, hum=base.hum + size)
 
 
+def slipping(_: Motor, base: Turning, *, share: Float) -> Turning:
+    """A coupling at the end of the motor slips: what comes out is less, and nothing of the motor itself changes."""
+    return replace(base, torque=base.torque * (1 - share))
+
+
 OIL = Condition("oil", "degC", reference=20)
 MOTOR = Model(
     name="motor", title="A motor", function=motor,
@@ -93,6 +98,7 @@ MOTOR = Model(
         Effect("friction", on_inputs=friction, unknowns=[Unknown("drag", 0, 10, "N*m")], needs=[OIL],
                acts_at_reference=True),
         Effect("rumble", on_results=rumble, unknowns=[Unknown("size", -50, 50, "W")]),
+        Effect("slipping", on_results=slipping, unknowns=[Unknown("share", 0, 0.5, "")]),
     ],
     objectives=[Require("torque", at_most="40 N*m")],
     sheet=[Section("Torque", "shaft_power", "torque")],

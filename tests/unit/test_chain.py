@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -140,14 +141,55 @@ def test_effects_of_source_and_last_act_in_their_order(kernel: Kernel, tmp_path:
     assert setup.model.read_results(evaluate(setup))["load"] == pytest.approx(load_by_hand, rel=1e-12)
 
 
-def test_an_effect_behind_a_link_is_refused(kernel: Kernel, tmp_path: Path) -> None:
-    """What follows would not see an effect on a result that is taken; on another result it acts as alone."""
-    on = '\n[effects.motor_rumble]\nsize = "5 W"\n'
+def test_an_effect_on_the_results_of_a_source_acts_inside(kernel: Kernel, tmp_path: Path) -> None:
+    """What takes the torque, the shaft too, sees the one that a slipping coupling lets through, in any order."""
+    on = '\n[effects.motor_slipping]\nshare = 0.2\n\n[effects.bent]\nforce = "10 N"\n'
     setup = loaded(kernel, "peg").setup(written(tmp_path, PEG_FILE + on))
-    assert setup.model.read_results(evaluate(setup))["motor_hum"] == pytest.approx(35.0)
-    heard = PEG_FILE.replace("angle =", 'noise = { from = "motor", result = "hum" }\nangle =')
-    with pytest.raises(InfeasibleError, match=r"'rumble' of motor acts on its result 'hum', but 'noise' takes it"):
-        evaluate(loaded(kernel, "peg").setup(written(tmp_path, heard + on)))
+    torque = 0.8 * 3000.0 / (600 * TURN)
+    load_by_hand = 100 + 10 * torque / 10 + torque / 0.05 * (1 + torque / 6000)
+    for each in (setup, replace(setup, effects=setup.effects[::-1])):
+        answers = each.model.read_results(evaluate(each))
+        assert answers["load"] == pytest.approx(load_by_hand, rel=1e-12)
+        assert answers["motor_torque"] == pytest.approx(torque, rel=1e-12)
+    assert taken_values(setup)["shaft_torque"] == pytest.approx(torque, rel=1e-12)
+    power = np.array([3000.0, 2000.0])
+    rows = evaluate_rows(setup, {"motor_power": np.tile(power, 2)}, 4, repeats=2)
+    assert rows.results["motor_torque"] == pytest.approx(np.tile(0.8 * power / (600 * TURN), 2), rel=1e-12)
+    told = loaded(kernel, "peg").taking(torque=from_model("motor").torque).describe()["effects"]
+    assert {each["name"]: each["acts_on"] for each in told}["motor_slipping"] == "results"
+
+
+def test_an_effect_on_the_results_of_a_source_is_found(kernel: Kernel, tmp_path: Path) -> None:
+    """Only the wear of the peg is measured, over the power; the coupling of the motor slips by an eighth."""
+    rng, power = np.random.default_rng(7), np.linspace(1500.0, 4000.0, 24)
+    depth = by_hand(power * (1 - 0.125), 6000.0, 0.05) * 1e6 + 0.001 * rng.standard_normal(24)
+    lines = [
+        "motor_power [W],depth [um]",
+        *(f"{p!r},{d!r}" for p, d in zip(power.tolist(), depth.tolist(), strict=True)),
+    ]
+    file, model = written(tmp_path, PEG_FILE), loaded(kernel, "peg")
+    data = written(tmp_path, "\n".join(lines) + "\n", "measured.csv")
+    diagnosis = model.diagnose(read(data, model, file), file, progress=False)
+    assert [cause.effect for cause in diagnosis.causes] == ["motor_slipping"]
+    low, high = diagnosis.document["causes"][0]["unknowns"]["share"]["interval95"]
+    assert low < 0.125 < high
+
+
+def test_a_source_is_calculated_once_in_a_call(tmp_path: Path) -> None:
+    """However many effects act behind it, the motor is called once; as many rows as there are, in one call."""
+    calls: list[Any] = []
+
+    def counted(given_motor: chained_pins.Motor) -> chained_pins.Turning:
+        calls.append(np.shape(given_motor.power))
+        return chained_pins.motor(given_motor)
+
+    guest = ModuleType("guest")
+    models = [replace(chained_pins.MOTOR, function=counted), chained_pins.PEG, chained_pins.SHAFT]
+    guest.truing_models = hookimpl(lambda: models)  # type: ignore[attr-defined]
+    on = '\n[effects.motor_slipping]\nshare = 0.2\n\n[effects.bent]\nforce = "10 N"\n'
+    setup = loaded(Kernel([guest]), "guest.peg").setup(written(tmp_path, PEG_FILE + on))
+    evaluate_rows(setup, {"motor_power": np.array([3000.0, 2000.0, 1000.0])}, 3)
+    assert calls == [(3,)]
 
 
 def test_what_is_stated_wins_and_bounds_are_kept(kernel: Kernel, tmp_path: Path) -> None:
@@ -189,6 +231,92 @@ def test_a_source_has_its_own_inputs_file(kernel: Kernel, tmp_path: Path) -> Non
         loaded(kernel, "peg").setup(written(tmp_path, text.replace('speed = "600 rpm"\n', "")))
 
 
+TWO_MOTORS = """plugin = "peg"
+
+[inputs]
+torque = { from = "left", result = "torque" }
+noise = { from = "right", result = "hum", power = "4 kW" }
+force = { from = "first", result = "load" }
+
+[from.left]
+plugin = "motor"
+power = "3 kW"
+speed = "600 rpm"
+
+[from.right]
+plugin = "motor"
+
+[from.first]
+plugin = "peg"
+radius = "20 mm"
+torque = { from = "right" }
+
+[tolerances]
+left_power = "off"
+"""
+
+
+def test_a_calculation_stands_twice_under_names_of_its_own(kernel: Kernel, tmp_path: Path) -> None:
+    """Two motors, each with its own power, tolerance and effects; a peg presses another one."""
+    model, file = loaded(kernel, "peg"), written(tmp_path, TWO_MOTORS)
+    setup = model.setup(file)
+    answers = setup.model.read_results(evaluate(setup))
+    left, right = 3000.0 / (TURN * 600), 4000.0 / (TURN * 1200)
+    assert answers["left_torque"] == pytest.approx(left, rel=1e-12)
+    assert answers["first_load"] == pytest.approx(100 + right / 0.02 * 1.001, rel=1e-12)
+    assert answers["load"] == pytest.approx(100 + right / 0.02 * 1.001 + left / 0.05 * 1.001, rel=1e-12)
+    assert sorted(scatter_of(setup).draw(0, 0, 3)) == ["first_radius", "radius", "right_power"]
+    assert {"left_slipping", "right_slipping", "first_bent"} < {*setup.model.effects}
+    changed = model.setup(file, set={"from.left.power": "1 kW", "right_power": "1 kW"})
+    assert evaluate(changed).left.torque == pytest.approx(left / 3, rel=1e-12)
+    assert evaluate(changed).right.torque == pytest.approx(right / 4, rel=1e-12)
+    again = model.setup(written(tmp_path, complete_inputs(setup, tmp_path), "again.toml"))
+    assert input_hash(again) == input_hash(setup)
+    assert evaluate(unpack(pack(setup))).load == answers["load"]
+
+
+def test_names_of_their_own_in_python_and_on_the_sheet(kernel: Kernel, tmp_path: Path) -> None:
+    """As ``from_model(calculation, name)``; a declaration may say so too. results.json says which calculation it is."""
+    left = from_model("motor", "left", power="3 kW", speed="600 rpm")
+    taken = loaded(kernel, "peg").taking(torque=left.torque, noise=from_model("motor", "right").hum)
+    run = taken.run(set={"studies.run": "[]"}, output=tmp_path / "run", progress=False)
+    assert run.si["left_torque"] == pytest.approx(3000.0 / (TURN * 600), rel=1e-12)
+    made = [(each["name"], each["model"]) for each in run.document["chain"]["calculations"]]
+    assert made == [("left", "motor"), ("right", "motor"), ("peg", "peg")]
+    page = (tmp_path / "run" / "sheet.md").read_text(encoding="utf-8")
+    heads = [line.partition(" ")[2].partition(" ")[2] for line in page.splitlines() if line.startswith("## ")]
+    assert [head for head in heads if "A motor" in head] == ["A motor (left, motor)", "A motor (right, motor)"]
+
+    @inputs
+    class Driven:
+        torque: float = given(from_model("motor", "left", speed="600 rpm").torque, "N*m")
+        stiffness: float = given(from_model("motor", "right").torque, "N*m")
+
+    guest = ModuleType("guest")
+    driven = Model(name="driven", title="", function=_with_inputs(Driven))
+    guest.truing_models = hookimpl(lambda: [driven])  # type: ignore[attr-defined]
+    model = Kernel([chained_pins, guest]).offer("guest.driven").model
+    assert model.inputs().left.speed == pytest.approx(10.0)
+    assert model.inputs().right.speed == pytest.approx(20.0)
+    assert failures(model) == {}
+
+
+def test_a_name_that_cannot_be_a_source_of_its_own_is_refused(kernel: Kernel, tmp_path: Path) -> None:
+    """With what to write instead."""
+    for old, new, sentence in (
+        ('plugin = "motor"\n\n[from.first]', "\n[from.first]", r'own, say whose: \[from.right\] plugin = "NAME"'),
+        ("[from.left]", "[from.lift]", "no input is taken from 'lift'"),
+        ('"left"', '"shaft"', "motor cannot be called 'shaft': another calculation has this name"),
+        ('"left"', '"1st"', "motor cannot be called '1st': its name begins with a letter"),
+        ('from = "left"', 'from = "left", plugin = "peg"', "'left' is peg and motor; give each its own name"),
+    ):  # fmt: skip
+        text = TWO_MOTORS.replace(old, new)
+        for name in ("shaft", "1st"):
+            text = text.replace("[from.left]", f"[from.{name}]") if name in new else text
+        with pytest.raises(InputError, match=sentence):
+            loaded(kernel, "peg").setup(written(tmp_path, text))
+
+
 FAULTS = """[inputs]
 torque = { from = "motor", result = "shaft_power", power = "3 kW" }
 angle = { from = "shafd" }
@@ -218,7 +346,11 @@ def test_all_faults_of_a_chain_are_told_at_once(kernel: Kernel, tmp_path: Path) 
     }
     twice = [fault for fault in raised.value.faults if "calculated once" in fault.message]
     assert [(fault.line, fault.message) for fault in twice] == [
-        (4, "power of motor is '4 kW' here and '3 kW' in line 2; a source is calculated once")
+        (
+            4,
+            "power of motor is '4 kW' here and '3 kW' in line 2; a source is calculated once, and a second one has a "
+            'name of its own: [from.second] plugin = "motor"',
+        )
     ]
 
 
@@ -245,7 +377,7 @@ def test_a_circle_is_refused_by_name(kernel: Kernel, tmp_path: Path) -> None:
 
 def _with_inputs(kind: type) -> Any:
     def turn(given_inputs: Any) -> Twist:
-        return Twist(angle=given_inputs.torque * 0, torque_out=given_inputs.torque)
+        return Twist(angle=given_inputs.torque / given_inputs.stiffness, torque_out=given_inputs.torque)
 
     turn.__annotations__ = {"given_inputs": kind, "return": Twist}
     return turn
@@ -306,7 +438,7 @@ def test_the_names_of_a_chain_are_all_its_calculations(kernel: Kernel) -> None:
         "torque", "stiffness", "motor_power", "motor_speed", "motor_loss", "motor_resistance_winding",
         "motor_current_winding"
     ]  # fmt: skip
-    assert [*model.effects] == ["motor_friction", "motor_rumble"]
+    assert [*model.effects] == ["motor_friction", "motor_rumble", "motor_slipping"]
     assert model.inputs().motor.speed == pytest.approx(10.0)  # 600 rpm, as from_model states it
 
 
@@ -328,3 +460,23 @@ def test_the_gear_stage_loads_the_discs_of_the_reducer() -> None:
     both = [setup.model.read_results(evaluate(setup)) for setup in (chain, alone)]
     assert both[0]["backlash"] == pytest.approx(both[1]["backlash"], rel=1e-12)
     assert both[0]["rv_gearing_output_torque"] == pytest.approx(known["output_torque"], rel=1e-12)
+
+
+def test_a_source_is_calculated_once_for_all_points_of_a_curve() -> None:
+    """The radius runs over three values; the motor, which knows nothing of it, is called once for the same machines."""
+    calls: list[int] = []
+
+    def counted(given_motor: chained_pins.Motor) -> chained_pins.Turning:
+        calls.append(np.size(given_motor.power))
+        return chained_pins.motor(given_motor)
+
+    guest = ModuleType("guest")
+    models = [replace(chained_pins.MOTOR, function=counted), chained_pins.PEG]
+    guest.truing_models = hookimpl(lambda: models)  # type: ignore[attr-defined]
+    peg = loaded(Kernel([guest]), "guest.peg").taking(torque=from_model("motor").torque)
+    curve = {"over": "radius", "at": "40..60 mm", "points": "3", "draws": "5000"}
+    asked = {"studies.run": '["reliability"]'} | {f"studies.reliability.{name}": text for name, text in curve.items()}
+    run = peg.run(set=asked, progress=False)
+    assert [rows for rows in calls if rows > 500] == [5000, 2048, 2048, 904]
+    said = run.document["studies"]["reliability"]["load"]
+    assert said["curve"]["probability"][1] == said["probability"]  # the radius is 50 mm

@@ -33,6 +33,7 @@ from truing import (
     rows,
 )
 from truing.calculation import calculate
+from truing.declare import remembered
 from truing.errors import InfeasibleError, PluginError, UsageError
 from truing.evaluate import answered, evaluate, evaluate_rows
 from truing.setup import Setup, SwitchedOn, default_setup, effect_column
@@ -501,7 +502,7 @@ RUBS, PUSHES = SwitchedOn(RUBBING, {"rub": 0.0}), SwitchedOn(PUSHED, {"push": 0.
 def test_the_model_is_called_for_one_copy_where_effects_act_after_it_and_answers_are_those_of_all_rows(
     monkeypatch: pytest.MonkeyPatch, active: SwitchedOn, calls: list[int]
 ) -> None:
-    monkeypatch.setattr(repeated, "_ANSWERS", OrderedDict())
+    monkeypatch.setattr(repeated, "OF_MODELS", OrderedDict())
     values = np.array([0.0, 0.05, 0.1, 0.2])
     together = asked(active, values, repeats=COPIES)
     assert calls == CALLS
@@ -552,5 +553,5 @@ def test_an_effect_that_changes_an_array_in_place_changes_nothing_that_is_rememb
 def test_inputs_that_differ_are_told_apart() -> None:
     """Also where their texts read alike one behind another: 1 and 12 are not 11 and 2."""
     several = [(1, 12), (11, 2), (112, ""), (1.0, 12), (np.array([1.0]), 12), (np.array([1.0, 12.0]), 12), ("1", "12")]
-    keys = {repeated._key({("one",): one, ("other",): other}) for one, other in several}
+    keys = {remembered.key_of({("one",): one, ("other",): other}) for one, other in several}
     assert len(keys) == len(several)

@@ -15,7 +15,7 @@ from truing.api.notebook import bullets, fold, heading, html_table, joined, para
 from truing.api.run import Run, demand_files, performed
 from truing.api.study import StudyResult
 from truing.api.tables import LABEL, beside, frame_text, settings_of, text_of
-from truing.declare.chain import Link
+from truing.declare.chain import link_to
 from truing.declare.correlations import Correlated
 from truing.declare.model import Study
 from truing.declare.near_miss import near_miss
@@ -125,7 +125,7 @@ class LoadedModel:
         for name, value in taken.items():
             if not isinstance(value, Taken):
                 raise UsageError(f'{name}: {value!r:.60} is no result of a model; write from_model("NAME").RESULT')
-        links = [Link("", name, value.model, value.result) for name, value in taken.items()]
+        links = [link_to(name, value) for name, value in taken.items()]
         try:
             offer = chained_offer(self.offer, links)
         except DeclarationError as error:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from truing.declare.chain import link_to
 from truing.declare.model import Model
 from truing.declare.taken import Taken
 from truing.errors import UsageError
@@ -143,7 +144,9 @@ def text_of(model: Model[Any, Any], name: str, value: Any) -> str:
         said = {
             each: one if isinstance(one, (str, bool, int, float)) else str(one) for each, one in value.settings.items()
         }
-        return toml_value({"from": value.model, "result": value.result, **said})
+        link = link_to(name, value)
+        own_name = {"plugin": link.model} if link.model else {}
+        return toml_value({"from": link.source, **own_name, "result": value.result, **said})
     if hasattr(value, "dimensionality"):
         if value.dimensionality != pint_quantity(1.0, unit).dimensionality:
             raise UsageError(f"{name}: {value} cannot be written in {unit or 'a number without a unit'}")

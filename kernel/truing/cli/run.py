@@ -181,7 +181,7 @@ def _groups(calculation: Calculation) -> Iterator[tuple[str, Sequence[str]]]:
         for name in names:
             del left[name]
         if names:
-            yield f"{section.of}: {section.title}" if section.of else section.title, names
+            yield section.whole_title, names
     if left:
         yield "Further results", list(left)
 

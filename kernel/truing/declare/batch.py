@@ -41,10 +41,12 @@ class FailedRows:
             self.sentences.append(sentence)
             self.codes[fresh] = len(self.sentences)
 
-    def take(self, other: FailedRows) -> None:
-        """Note what failed in another log of the same rows."""
+    def take(self, other: FailedRows, prefix: str = "") -> None:
+        """Note what failed in another log of the same rows, whose results have a prefix here."""
         for number, sentence in enumerate(other.sentences, start=1):
             self.add(other.codes == number, sentence)
+        for name, lacking in other.of.items():
+            self.of.setdefault(prefix + name, FailedRows(len(self.codes))).take(lacking)
 
     def reasons(self, rows: int) -> dict[int, str]:
         """Return why rows failed, by row; what holds for a batch of one answer holds for all its ``rows``."""
@@ -67,21 +69,22 @@ def watching(rows: int, *, is_single: bool = False) -> Iterator[FailedRows]:
 
 
 @contextmanager
-def reasons_of_part(prefix: str) -> Iterator[None]:
-    """Collect what ``feasible`` finds in one calculation of several, whose results have a prefix in the whole."""
+def reasons_of_part(prefix: str) -> Iterator[FailedRows | None]:
+    """Collect what ``feasible`` finds in one calculation of several, whose results have a prefix in the whole.
+
+    Give what it is collected in, None where nobody watches.
+    """
     failed = _WATCH.get()
     if failed is None:
-        yield
+        yield None
         return
     own = FailedRows(len(failed.codes), is_single=failed.is_single)
     token = _WATCH.set(own)
     try:
-        yield
+        yield own
     finally:
         _WATCH.reset(token)
-        failed.take(own)
-        for name, lacking in own.of.items():
-            failed.of.setdefault(prefix + name, FailedRows(len(failed.codes))).take(lacking)
+        failed.take(own, prefix)
 
 
 def feasible(

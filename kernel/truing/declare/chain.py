@@ -3,7 +3,8 @@
 The calculation at the end keeps its names. Every other one, a source, has its own name before each of its flat names:
 ``power`` of ``rv_gearing`` is ``rv_gearing_power``. Inputs and results of the chain are those of the last calculation
 with one part more for each source. An input that is taken from a source is NaN until it is filled; one that is stated
-all the same keeps what is stated, as a measured column does.
+all the same keeps what is stated, as a measured column does. A calculation may stand in a chain more than once, each
+time as a source with a name of its own.
 """
 
 from __future__ import annotations
@@ -11,20 +12,33 @@ from __future__ import annotations
 import dataclasses
 import functools
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from truing.declare.batch import either, feasible, reasons_of_part
+from truing.declare.batch import FailedRows, either, feasible, reasons_of_part
 from truing.declare.correlations import Correlated
 from truing.declare.dynamics import Dynamics
-from truing.declare.fields import KEY, Given, InputField, Part, ResultField, hints_of, make, read, spec_of, with_values
+from truing.declare.fields import (
+    BESIDE,
+    KEY,
+    Given,
+    InputField,
+    Part,
+    ResultField,
+    hints_of,
+    make,
+    read,
+    spec_of,
+    with_values,
+)
 from truing.declare.goals import Objective, PriceByChoice, Require, Vary
 from truing.declare.model import Model, Record, Section
 from truing.declare.near_miss import near_miss
-from truing.declare.sources import Condition, Effect, ErrorSource, Tolerance
+from truing.declare.remembered import OF_SOURCES, answered_before
+from truing.declare.sources import ActsOn, Condition, Effect, ErrorSource, Tolerance
 from truing.declare.spreads import Band, ByChoice, Drawn, Grade, Spread
 from truing.declare.taken import Taken
 from truing.errors import DeclarationError
@@ -32,19 +46,34 @@ from truing.units import human_dimension, same_dimension, to_si, unit_text
 from truing.units.names import LEVELS
 
 AnyModel = Model[Any, Any]
+CARRIED: Final = "_carried"
+"""The field of the inputs of a chain that holds what is ``Carried``."""
 
 
 @dataclass(frozen=True)
 class Link:
     """``input`` of the calculation ``owner`` ("" is the last one) is ``result`` of the calculation ``source``.
 
-    ``result`` is a result of that one, or an input that both share.
+    ``result`` is a result of that one, or an input that both share. ``model`` is the calculation that ``source`` is,
+    where that goes by a name of its own.
     """
 
     owner: str
     input: str
     source: str
     result: str
+    model: str = ""
+
+    @property
+    def calculation(self) -> str:
+        """The source as the command line knows it."""
+        return self.model or self.source
+
+
+def link_to(name: str, taken: Taken) -> Link:
+    """Return the link by which an input of the last calculation is what was taken from another one."""
+    own_name = taken.called not in {"", taken.model}
+    return Link("", name, taken.called or taken.model, taken.result, taken.model if own_name else "")
 
 
 def declared_links(model: AnyModel) -> tuple[list[Link], dict[str, dict[str, Any]]]:
@@ -54,8 +83,8 @@ def declared_links(model: AnyModel) -> tuple[list[Link], dict[str, dict[str, Any
     for name, field in model.input_fields.items():
         taken = getattr(field.spec, "taken", None)
         if taken is not None:
-            links.append(Link("", name, taken.model, taken.result))
-            settings.setdefault(taken.model, {}).update(taken.settings)
+            links.append(link := link_to(name, taken))
+            settings.setdefault(link.source, {}).update(taken.settings)
     return links, settings
 
 
@@ -98,34 +127,59 @@ class Chain:
         """Return the inputs of one calculation from those of the chain."""
         return getattr(inputs, _attribute(name)) if name else inputs
 
-    def filled(self, inputs: Any, upto: str | None = None) -> Any:
-        """Return the inputs of the chain with all that is taken from sources, or what one calculation takes.
+    @functools.cached_property
+    def calculations(self) -> dict[str, AnyModel]:
+        """Every calculation that stands behind a source, once, by the name that the command line knows."""
+        return {link.calculation: self.sources[link.source] for link in self.links}
 
-        Sources are calculated for it, as the inputs have them. A row in which a source has no answer fails.
+    def name_in_words(self, name: str) -> str:
+        """Return how a calculation is called, and which one it is where it goes by a name of its own."""
+        own = self.model_of(name).name
+        calculation = next((link.model for link in self.links if link.source == name), "")
+        return f"{name}, {calculation}" if calculation else name or own
+
+    def filled(self, inputs: Any, upto: str = "") -> Any:
+        """Return the inputs of the chain with all that one calculation, and those before it, take from sources.
+
+        Sources are calculated for it, as the inputs have them, and what they answer goes along with the inputs. A row
+        in which a source has no answer fails.
         """
-        answers: dict[str, tuple[Any, Any]] = {}
+        known: dict[str, tuple[Any, Any]] = {}
         for name in [*self.sources, ""]:
-            own = self._taken_in(self.inputs_of(inputs, name), name, answers)
-            if upto in {None, name}:
-                inputs = replace(inputs, **{_attribute(name): own}) if name else own
+            own = self._taken_in(self.inputs_of(inputs, name), name, known)
+            inputs = with_values(inputs, {(_attribute(name),): own}) if name else own
             if name == upto:
                 break
-            if name:
-                answers[name] = own, self._answer_of(name, own)
-        return inputs
+            known[name] = own, self._answer_of(carried_by(inputs), name, own)
+        return _carrying(inputs, replace(carried_by(inputs), known=known))
 
     def answers(self, inputs: Any) -> tuple[Any, dict[str, Any]]:
         """Return the inputs of the last calculation, filled, and what every source answers by attribute."""
-        answers: dict[str, tuple[Any, Any]] = {}
-        for name in self.sources:
-            own = self._taken_in(self.inputs_of(inputs, name), name, answers)
-            answers[name] = own, self._answer_of(name, own)
-        last = self._taken_in(inputs, "", answers)
-        return last, {_attribute(name): results for name, (_, results) in answers.items()}
+        inputs = self.filled(inputs)
+        return inputs, {_attribute(name): results for name, (_, results) in carried_by(inputs).known.items()}
 
-    def _answer_of(self, name: str, own: Any) -> Any:
-        with reasons_of_part(prefix_of(name)):
-            return self.sources[name].function(own)
+    def _answer_of(self, carried: Carried, name: str, own: Any) -> Any:
+        """Calculate a source, once for the same inputs, with the effects on its results that are on."""
+        inputs, results = carried.known.get(name, (None, None))
+        if inputs is own:
+            return results
+        acting = carried.acting.get(name, ())
+        with reasons_of_part(prefix_of(name)) as failed:
+            results = self._calculated(name, own, None if acting else failed)
+        for act in acting:
+            results = act(own, results)
+        return results
+
+    def _calculated(self, name: str, own: Any, failed: FailedRows | None) -> Any:
+        """Calculate a source; of many rows, whose failures are noted in ``failed``, what it answered is remembered."""
+        source = self.sources[name]
+        values = {field.path: read(own, field.path) for field in source.input_fields.values() if failed is not None}
+        if failed is None or not any(isinstance(value, np.ndarray) and value.ndim for value in values.values()):
+            return source.function(own)
+        rows, results = len(failed.codes), len(source.own_result_fields)
+        known = answered_before(OF_SOURCES, source.function, own, values, rows=rows, results=results)
+        failed.take(known.failed)
+        return known.results
 
     def _taken_in(self, own: Any, name: str, answers: Mapping[str, tuple[Any, Any]]) -> Any:
         """Fill the inputs of one calculation with what those before it answered; what is stated stays."""
@@ -135,13 +189,39 @@ class Chain:
                 continue
             field, (inputs, results) = fields[link.input], answers[link.source]
             source = self.sources[link.source]
+            stated = np.asarray(read(own, field.path), dtype=float)[()]
+            if not np.isnan(stated).any():
+                continue
             known = source.own_result_fields.get(link.result)
             answer = read(results, known.path) if known else read(inputs, source.input_fields[link.result].path)
-            stated = read(own, field.path)
-            value = either(np.asarray(stated, dtype=float)[()], answer)
+            value = either(stated, answer)
             _demand_fitting(field, value, link)
             changed[field.path] = value
         return with_values(own, changed) if changed else own
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What goes along with the inputs of a chain, by source: effects that act on its results, and what it answered.
+
+    An effect is a function of inputs and results of the source. An answer holds for the inputs that stand beside it.
+    """
+
+    acting: Mapping[str, tuple[Callable[[Any, Any], Any], ...]] = dataclasses.field(default_factory=dict)
+    known: Mapping[str, tuple[Any, Any]] = dataclasses.field(default_factory=dict)
+
+
+NOTHING: Final = Carried()
+
+
+def carried_by(inputs: Any) -> Carried:
+    """Return what goes along with inputs; nothing of those of a calculation alone."""
+    carried: Carried = getattr(inputs, CARRIED, NOTHING)
+    return carried
+
+
+def _carrying(inputs: Any, carried: Carried) -> Any:
+    return with_values(inputs, {(CARRIED,): carried})
 
 
 def _demand_fitting(field: InputField, value: Any, link: Link) -> None:
@@ -310,6 +390,27 @@ def calculation_of(model: AnyModel, effect: str) -> str:
     )
 
 
+def acts_on(model: AnyModel, effect: Effect[Any, Any]) -> ActsOn:
+    """Return where an effect acts; one on the results of a source acts inside the chain, before they are taken."""
+    name = calculation_of(model, effect.name)
+    if not name or not isinstance(model, ChainModel):
+        return effect.place
+    return model.chain.sources[name].effects[effect.name.removeprefix(prefix_of(name))].place
+
+
+Active = TypeVar("Active")
+
+
+def in_order_of_calculation(
+    model: AnyModel, effects: Iterable[Active], effect_of: Callable[[Active], Effect[Any, Any]]
+) -> list[Active]:
+    """Return effects so that those of a calculation act before those of the ones that take from it."""
+    if not isinstance(model, ChainModel):
+        return list(effects)
+    order = {name: place for place, name in enumerate([*model.chain.sources, ""])}
+    return sorted(effects, key=lambda active: order[calculation_of(model, effect_of(active).name)])
+
+
 def filled(model: AnyModel, inputs: Any) -> Any:
     """Return inputs with what is taken from other calculations; those of a model that takes nothing as they are."""
     return model.chain.filled(inputs) if isinstance(model, ChainModel) else inputs
@@ -388,7 +489,10 @@ class _MovingChain(Dynamics[Any, Any, Any]):
 def _input_type(chain: Chain) -> type[Any]:
     parts = {_attribute(name): _part(_redeclared(source.input_type, _open_inputs(chain, name)), prefix_of(name))
              for name, source in chain.sources.items()}  # fmt: skip
-    return _with_parts(_redeclared(chain.last.input_type, _open_inputs(chain, "")), parts)
+    carried = dataclasses.field(default=NOTHING, repr=False, compare=False, metadata=BESIDE)
+    return _with_parts(
+        _redeclared(chain.last.input_type, _open_inputs(chain, "")), {**parts, CARRIED: (Carried, carried)}
+    )
 
 
 def _result_type(chain: Chain) -> type[Any]:
@@ -409,7 +513,8 @@ def _open_inputs(chain: Chain, name: str) -> dict[tuple[str, ...], Given]:
         if link.owner == name:
             field = model.input_fields[link.input]
             assert isinstance(field.spec, Given)
-            changed[field.path] = replace(field.spec, default=None, taken=Taken(link.source, link.result))
+            taken = Taken(link.calculation, link.result, called=link.source if link.model else "")
+            changed[field.path] = replace(field.spec, default=None, taken=taken)
     return changed
 
 
@@ -537,12 +642,13 @@ def _effect_of(chain: Chain, name: str, effect: Effect[Any, Any]) -> Effect[Any,
 
     functools.update_wrapper(acting, effect.function)
     acting.__annotations__ = {}
-    parameters = inspect.signature(effect.function).parameters.values()
+    inside = bool(name) and effect.place == "results"
+    parameters = [*inspect.signature(effect.function).parameters.values()][1 if inside else 0 :]
     new_names = {before: after for after, before in own_names.items()}
     named = [each.replace(name=new_names.get(each.name, each.name), annotation=each.empty) for each in parameters]
     acting.__signature__ = inspect.Signature(named)  # type: ignore[attr-defined]
     unknowns = tuple(replace(each, along=rename(each.along)) if each.along else each for each in effect.unknowns)
-    where: dict[str, Any] = {f"on_{effect.place}": acting}
+    where: dict[str, Any] = {f"on_{effect.place}": None} | {"on_inputs" if inside else f"on_{effect.place}": acting}
     return replace(
         effect, name=prefix_of(name) + effect.name, needs=needs, unknowns=unknowns,
         reads=[rename(each) for each in effect.reads], **where,
@@ -550,35 +656,29 @@ def _effect_of(chain: Chain, name: str, effect: Effect[Any, Any]) -> Effect[Any,
 
 
 def _acting(chain: Chain, name: str, effect: Effect[Any, Any]) -> Callable[..., Any]:
+    """Return an effect of one calculation as a function of the inputs, or inputs and results, of the chain.
+
+    One on the results of a source acts inside, before they are taken: it is kept beside the inputs until then.
+    """
     attribute, function = _attribute(name), effect.function
 
     def on_inputs(inputs: Any, **keywords: Any) -> Any:
         ready = chain.filled(inputs, name)
         changed = function(chain.inputs_of(ready, name), **keywords)
-        return replace(ready, **{attribute: changed}) if name else changed
+        return with_values(ready, {(attribute,): changed}) if name else changed
 
-    def on_results(inputs: Any, results: Any, **keywords: Any) -> Any:
+    def inside(inputs: Any, **keywords: Any) -> Any:
+        carried = carried_by(inputs)
+        acting = (*carried.acting.get(name, ()), lambda own, results: function(own, results, **keywords))
+        known = {each: answer for each, answer in carried.known.items() if each != name}
+        return _carrying(inputs, Carried({**carried.acting, name: acting}, known))
+
+    def on_reading(inputs: Any, results: Any, **keywords: Any) -> Any:
         ready, before = chain.filled(inputs, name), getattr(results, attribute)
-        after = function(chain.inputs_of(ready, name), before, **keywords)
-        if effect.place == "results":
-            _demand_nothing_behind(chain, name, effect.name, before, after)
-        return replace(results, **{attribute: after})
+        return replace(results, **{attribute: function(chain.inputs_of(ready, name), before, **keywords)})
 
-    return on_inputs if effect.place == "inputs" else on_results
-
-
-def _demand_nothing_behind(chain: Chain, name: str, effect: str, before: Any, after: Any) -> None:
-    """State that an effect on the results of a source changes none that another calculation goes on with."""
-    fields = chain.sources[name].own_result_fields
-    for link in chain.links:
-        if link.source == name and link.result in fields:
-            path = fields[link.result].path
-            same = np.equal(read(before, path), read(after, path))
-            feasible(
-                same,
-                f"effect '{effect}' of {name} acts on its result '{link.result}', but '{link.input}' takes it from the "
-                "calculation: what follows would not see the effect",
-            )
+    functions: dict[ActsOn, Callable[..., Any]] = {"inputs": on_inputs, "results": inside, "reading": on_reading}
+    return functions[effect.place]
 
 
 def _condition_of(condition: Condition, rename: Callable[[str], str]) -> Condition:

@@ -25,6 +25,8 @@ else:
     Float = Annotated[float, "a number or an array: may vary inside a batch"]
 
 KEY = "truing"
+BESIDE = {"truing.beside": True}
+"""The metadata of a field that is none of the inputs: what goes along with them from effects to the calculation."""
 Between = Literal["linear", "hold"]
 Role = Literal["set", "goes_on", "follows"]
 """What a machine lets you do with a quantity: set it, only let it go on (hours, wear), or see it follow from others."""
@@ -260,7 +262,8 @@ def _specs(cls: type[Any]) -> dict[str, Spec]:
     """Return the declarations of a class by attribute; refuses a class that declares nothing."""
     if not dataclasses.is_dataclass(cls):
         raise DeclarationError(f"{_spoken(cls)} is declared neither by @inputs nor by @results")
-    return {declared.name: spec_of(declared) for declared in dataclasses.fields(cls)}
+    own = (declared for declared in dataclasses.fields(cls) if declared.metadata != BESIDE)
+    return {declared.name: spec_of(declared) for declared in own}
 
 
 def _spoken(cls: Any) -> str:

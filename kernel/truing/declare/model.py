@@ -143,6 +143,11 @@ class Section:
         for name, value in {**values, "caption": caption, "key": key, "of": of}.items():
             object.__setattr__(self, name, value)
 
+    @property
+    def whole_title(self) -> str:
+        """Its title; in a chain, where two calculations may have the same, behind the source to which it belongs."""
+        return f"{self.of}: {self.title}" if self.of else self.title
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Model(Generic[I, R]):

@@ -14,14 +14,15 @@ import numpy as np
 
 from truing.arrays import Indices, Matrix
 from truing.declare.following import NotedError, following_together
+from truing.declare.remembered import REMEMBERED as REPEATED
+from truing.declare.remembered import forget
 from truing.declare.sources import Effect
 from truing.diagnosis.causes import Candidate, at_rest
 from truing.diagnosis.machine import Calibration, Tolerated, predict_each
 from truing.diagnosis.side_by_side import asked_beside, side_by_side
 from truing.errors import PluginError
 from truing.gauge import Trial
-from truing.repeated import REMEMBERED as REPEATED
-from truing.repeated import forget, processor_seconds
+from truing.repeated import processor_seconds
 from truing.setup import Setup, SwitchedOn, effect_column
 
 T = TypeVar("T")

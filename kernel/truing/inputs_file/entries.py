@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from truing.declare.chain import acts_on
 from truing.declare.fields import Given, InputField, Loaded
 from truing.declare.model import Model
 from truing.declare.near_miss import near_miss
@@ -248,17 +249,22 @@ def _condition(condition: Condition) -> FileEntry:
 
 
 def _effects(model: Model[Any, Any]) -> dict[str, FileSection]:
-    return {name: _effect(effect) for name, effect in model.known_effects.items()}
+    return {name: _effect(model, effect) for name, effect in model.known_effects.items()}
 
 
-def _effect(effect: Effect[Any, Any]) -> FileSection:
+def _effect(model: Model[Any, Any], effect: Effect[Any, Any]) -> FileSection:
     entries = {
         unknown.name: FileEntry(partial(_read_unknown, unknown), _unknown_schema(unknown), not effect.parts)
         for unknown in effect.unknowns
     }
     entries.setdefault("covariance", FileEntry(partial(_read_covariance, effect), _covariance_schema(effect)))
     alone = "what is left out is off" if effect.parts else ""
-    words = (effect.why or effect.looks_like or effect.name, f"acts on the {effect.place}", effect.source, alone)
+    words = (
+        effect.why or effect.looks_like or effect.name,
+        f"acts on the {acts_on(model, effect)}",
+        effect.source,
+        alone,
+    )
     return FileSection(f"Effect {effect.name}", "; ".join(word for word in words if word), entries)
 
 

@@ -1,8 +1,9 @@
 """Inputs that a file takes from other calculations: the file of a chain, told as that of one calculation.
 
 ``output_torque = { from = "rv_gearing", result = "output_torque", group = 5 }`` stands under [inputs];
-[from.rv_gearing] holds further inputs of that calculation, or ``inputs_file``, its own file. What is said of a source
-comes to stand where the chain has it: its power under [inputs] as ``rv_gearing_power``, each with its own place.
+[from.rv_gearing] holds further inputs of that calculation, or ``inputs_file``, its own file. ``plugin`` says which
+calculation a source is that goes by a name of its own. What is said of a source comes to stand where the chain has it:
+its power under [inputs] as ``rv_gearing_power``, each with its own place.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from truing.units.grammar import shown
 
 FROM = "from"
 INPUTS_FILE = "inputs_file"
+PLUGIN = "plugin"
 _LINK = re.compile(rf"\s*\{{(?:.*[,\s])?{FROM}\s*=")
 MOST_FILES = 20
 """A chain of more files than this goes in a circle."""
@@ -51,6 +53,8 @@ class _Chain:
     told: dict[str, dict[KeyPath, _Said]] = field(default_factory=dict)
     links: dict[Link, Place] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)
+    called: dict[str, str] = field(default_factory=dict)
+    """Sources that go by a name of their own, and the calculation that each is."""
     files: int = 0
 
     def fault(self, sentence: str, place: Place) -> None:
@@ -59,11 +63,17 @@ class _Chain:
 
     def name_of(self, word: str) -> str:
         """Return the word that first named this calculation; a dot may be written as a line below."""
+        if word in self.called:
+            return word
         offers = self.offer.beside
         meant = offer_beside(self.offer, word)
         alike = [offers[name] for name in offers if name.replace(".", "_") == word]
         meant = meant or (alike[0] if len(alike) == 1 else None)
         return word if meant is None else self.words.setdefault(meant.name, meant.name if alike else word)
+
+    def offer_of(self, source: str) -> Offer | None:
+        """Return the calculation that a source is."""
+        return offer_beside(self.offer, self.called.get(source, source))
 
 
 def is_taken(raw: Any) -> bool:
@@ -87,6 +97,7 @@ def with_sources(document: InputsDocument, offer: Offer, folder: Path) -> Offer:
     if FROM not in document.data and not takes:
         return offer
     chain = _Chain(offer, document)
+    _read_names(chain, document)
     _read_inputs(chain, document, "", folder)
     _read_sources(chain, document, folder, owner="")
     chain.links = {_with_owner(chain, link): place for link, place in chain.links.items()}
@@ -116,7 +127,7 @@ def _with_owner(chain: _Chain, link: Link) -> Link:
     if link.owner or link.input in last.model.input_fields:
         return link
     for name in {each.source for each in chain.links}:
-        offer = offer_beside(chain.offer, name)
+        offer = chain.offer_of(name)
         own = link.input.removeprefix(prefix_of(name))
         if offer is not None and own != link.input and own in offer.model.input_fields:
             return replace(link, owner=name, input=own)
@@ -126,6 +137,26 @@ def _with_owner(chain: _Chain, link: Link) -> Link:
 def _place_of(chain: _Chain, link: Link) -> Place:
     alike = (place for each, place in chain.links.items() if (each.owner, each.input) == (link.owner, link.input))
     return next(alike, chain.document.place((FROM, link.owner)))
+
+
+def _read_names(chain: _Chain, document: InputsDocument) -> None:
+    """Note what each source is that goes by a name of its own: ``plugin`` in the braces or under [from.NAME]."""
+    sections = [document.data.get("inputs"), *_sections(document.data.get(FROM))]
+    links = [raw for section in sections if isinstance(section, dict) for raw in section.values() if is_taken(raw)]
+    stated = [(link[FROM], link[PLUGIN]) for link in links if PLUGIN in link]
+    named = document.data.get(FROM)
+    for word, section in named.items() if isinstance(named, dict) else ():
+        stated += [(word, section[PLUGIN])] if isinstance(section, dict) and PLUGIN in section else []
+    for word, model in stated:
+        if not (isinstance(word, str) and isinstance(model, str)) or model == word:
+            continue
+        if chain.called.setdefault(word, model) != model:
+            sentence = f"{shown(word)} is {chain.called[word]} and {model}; give each its own name"
+            chain.fault(sentence, document.place((FROM, word)))
+
+
+def _sections(content: Any) -> list[Any]:
+    return list(content.values()) if isinstance(content, dict) else []
 
 
 def _read_inputs(chain: _Chain, document: InputsDocument, owner: str, folder: Path) -> None:
@@ -152,9 +183,9 @@ def _read_link(chain: _Chain, owner: str, name: str, said: _Said) -> None:
         )
         return
     source = chain.name_of(source)
-    chain.links[Link(owner, name, source, result)] = said.place
+    chain.links[Link(owner, name, source, result, chain.called.get(source, ""))] = said.place
     for key, value in said.value.items():
-        if key not in {FROM, "result"}:
+        if key not in {FROM, PLUGIN, "result"}:
             _state(chain, source, ("inputs", key), replace(said, value=value))
 
 
@@ -179,7 +210,10 @@ def _read_sources(chain: _Chain, document: InputsDocument, folder: Path, owner: 
 
 
 def _read_entry_of(chain: _Chain, name: str, key: str, said: _Said) -> None:
-    if key == INPUTS_FILE:
+    if key == PLUGIN:
+        if not isinstance(said.value, str):
+            chain.fault(f'{PLUGIN} is the calculation that {shown(name)} is; write {PLUGIN} = "NAME"', said.place)
+    elif key == INPUTS_FILE:
         _read_file(chain, name, said)
     elif is_taken(said.value):
         _read_link(chain, name, key, said)
@@ -202,9 +236,11 @@ def _read_file(chain: _Chain, name: str, said: _Said) -> None:
     own = read_document(text, str(file))
     chain.document.faults += own.faults
     named = own.data.get("plugin", name)
-    if isinstance(named, str) and chain.name_of(named) != name:
-        chain.fault(f"this file is for {shown(named)}; it stands here for {name}", own.place(("plugin",)))
+    stands_for = chain.called.get(name, name)
+    if isinstance(named, str) and chain.name_of(named) != chain.name_of(stands_for) and named != stands_for:
+        chain.fault(f"this file is for {shown(named)}; it stands here for {stands_for}", own.place(("plugin",)))
         return
+    _read_names(chain, own)
     _read_inputs(chain, own, name, file.parent)
     _read_sources(chain, own, file.parent, owner=name)
     for path, value in _entries_of(own):
@@ -232,7 +268,8 @@ def _state(chain: _Chain, name: str, path: KeyPath, said: _Said) -> None:
     elif before.value != said.value and before.place[0] == said.place[0]:
         line = f" in line {before.place[1]}" if before.place[1] else ""
         sentence = (
-            f"{path[-1]} of {name} is {said.value!r} here and {before.value!r}{line}; a source is calculated once"
+            f"{path[-1]} of {name} is {said.value!r} here and {before.value!r}{line}; a source is calculated once, and "
+            f'a second one has a name of its own: [from.second] plugin = "{chain.called.get(name, name)}"'
         )
         chain.fault(sentence, said.place)
 

@@ -279,7 +279,8 @@ def offer_beside(offer: Offer, name: str) -> Offer | None:
 def chained_offer(offer: Offer, stated: Sequence[Link] = ()) -> Offer:
     """Return a calculation with all that its inputs are taken from, as declared and as stated besides.
 
-    Links that are stated win over those declared of the same input. A source goes by the word that first names it.
+    Links that are stated win over those declared of the same input. A source goes by the word that first names it, or
+    by a name of its own.
     Raises ChainError with what is wrong with links, those of sources included.
     """
     last = offer.beside.get(offer.name, offer)
@@ -315,29 +316,48 @@ def _gathered(offer: Offer, last: Offer, stated: Sequence[Link]) -> _Gathered:
     words = {last.name: last.model.name}
     for link in stated:
         named = offer_beside(offer, link.source)
-        words.setdefault(named.name if named is not None else "", link.source)
+        if named is not None and not link.model:
+            words.setdefault(named.name, link.source)
     while waiting:
         owner, current = waiting.pop(0)
         declared, settings = declared_links(current.model)
         order = {name: place for place, name in enumerate(current.model.input_fields)}
         own = [replace(link, owner=owner) for link in declared] + [link for link in stated if link.owner == owner]
         for link in sorted(own, key=lambda link: order.get(link.input, len(order))):  # equal files give equal chains
-            source = offer_beside(offer, link.source)
-            if source is None:
-                gathered.faults.append((link, _no_source(offer, link)))
+            source = offer_beside(offer, link.calculation)
+            fault = _no_source(offer, link) if source is None else _wrong_name(offer, link, gathered.sources, source)
+            if source is None or fault:
+                gathered.faults.append((link, fault))
                 continue
-            word = words.setdefault(source.name, link.source)
+            word = link.source if link.model else words.setdefault(source.name, link.source)
             gathered.links[owner, link.input] = replace(link, source=word)
             gathered.settings.setdefault(word, {}).update(settings.get(link.source, {}))
-            if word not in gathered.sources and source is not last:
+            if word not in gathered.sources and (link.model or source is not last):
                 gathered.sources[word] = source
                 waiting.append((word, source))
     return gathered
 
 
 def _no_source(offer: Offer, link: Link) -> str:
-    near = near_miss(link.source[:80], [*offer.beside, *(other.model.name for other in offer.beside.values())])
-    return f"'{link.input}' is taken from {shown(link.source)}, which no plugin offers.{near}"
+    known = [*offer.beside, *(other.model.name for other in offer.beside.values())]
+    near = near_miss(link.calculation[:80], known)
+    said = f"'{link.input}' is taken from {shown(link.calculation)}, which no plugin offers.{near}"
+    if link.model or near or not link.source.isidentifier():
+        return said
+    return f'{said} If it is a name of its own, say whose: [from.{link.source}] plugin = "NAME"'
+
+
+def _wrong_name(offer: Offer, link: Link, sources: Mapping[str, Offer], source: Offer) -> str:
+    """Say what is wrong with the name of its own by which a source goes; nothing where it is right."""
+    called = shown(link.source)
+    if not link.model:
+        return ""
+    if not (link.source.isidentifier() and link.source.isascii()) or link.source.startswith("_"):
+        return f"{link.model} cannot be called {called}: its name begins with a letter, then letters, digits and _"
+    if offer_beside(offer, link.source) is not None:
+        return f"{link.model} cannot be called {called}: another calculation has this name"
+    other = sources.get(link.source, source)
+    return "" if other is source else f"{called} is {other.model.name} and {link.model}; give each its own name"
 
 
 def _setting_faults(

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from truing.declare.chain import Chain, chain_of, prefix_of
 from truing.evaluate import taken_values
@@ -78,19 +80,22 @@ def graph_figure(chain: Chain) -> Figure:
     figure = Figure(figsize=(wide, high))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0, wide), ylim=(0, high))
     axes.set_axis_off()
-    centres: dict[str, tuple[float, float]] = {}
+    boxes: dict[str, Text] = {}
     for place, names in enumerate(columns):
         for index, name in enumerate(names):
-            x = MARGIN + BOX_WIDTH / 2 + place * (BOX_WIDTH + GAP)
-            centres[name] = x, high * (1 - (index + 0.5) / len(names))
+            centre = MARGIN + BOX_WIDTH / 2 + place * (BOX_WIDTH + GAP), high * (1 - (index + 0.5) / len(names))
             box = {"boxstyle": "round,pad=0.5", "facecolor": "#eef2f6", "edgecolor": "#333333", "linewidth": 0.8}
-            axes.text(*centres[name], name or chain.last.name, ha="center", va="center", bbox=box, fontsize=9)
+            said = chain.name_in_words(name).replace(", ", "\n")
+            boxes[name] = axes.text(*centre, said, ha="center", va="center", bbox=box, fontsize=9)
     for (source, owner), words in taken.items():
-        (x, y), (to_x, to_y) = centres[source], centres[owner]
-        start, end = (x + BOX_WIDTH / 2 - 0.1, y), (to_x - BOX_WIDTH / 2 + 0.1, to_y)
-        axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": "-|>", "color": "#333333", "linewidth": 1.0})
-        middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2 + 0.05
-        axes.text(*middle, "\n".join(word.replace("_", " ") for word in words), ha="center", va="bottom", fontsize=7.5)
+        start, end = boxes[source], boxes[owner]
+        ends = {"patchA": start.get_bbox_patch(), "patchB": end.get_bbox_patch()}
+        style = {"arrowstyle": "-|>", "color": "#333333", "linewidth": 1.0, **ends}
+        axes.annotate("", xy=end.get_position(), xytext=start.get_position(), arrowprops=style)
+        x, y = np.mean([start.get_position(), end.get_position()], axis=0)
+        label = {"boxstyle": "square,pad=0.15", "facecolor": "white", "edgecolor": "none"}
+        listed = "\n".join(word.replace("_", " ") for word in words)
+        axes.text(x, y, listed, ha="center", va="center", fontsize=7.5, bbox=label)
     return figure
 
 
@@ -99,4 +104,4 @@ def head_of_calculation(chain: Chain, of: str) -> Chapter:
     own = chain.model_of(of)
     said = f"Names begin with {prefix_of(of)} in files." if of else "Names stand in files as they are."
     words = [Paragraph(own.summary)] if own.summary else []
-    return Chapter(f"{own.title} ({own.name})", (*words, Paragraph(said, "aside")))
+    return Chapter(f"{own.title} ({chain.name_in_words(of)})", (*words, Paragraph(said, "aside")))

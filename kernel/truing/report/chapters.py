@@ -13,7 +13,7 @@ import numpy as np
 from truing.arrays import Matrix
 from truing.calculation import Calculation
 from truing.declare.blocks import Block, Drawing, Table, Words
-from truing.declare.chain import chain_of
+from truing.declare.chain import acts_on, chain_of
 from truing.declare.fields import Axis, Found, InputField, ResultField
 from truing.declare.model import Model, Section
 from truing.errors import PluginError
@@ -130,7 +130,7 @@ def _first_drawing(writing: Writing, section: Section) -> Drawing | None:
 
 def _blocks_of(writing: Writing, section: Section) -> list[Block]:
     """Return the blocks of a section, which are made once."""
-    title = f"{section.of}: {section.title}"
+    title = section.whole_title
     if section.blocks is not None and title not in writing.made:
         writing.made[title] = list(section.blocks(writing.calculation.record))
     return writing.made.get(title, [])
@@ -319,7 +319,8 @@ def _entry(writing: Writing, name: str) -> ResultEntry:
         printed = Value(*format_value(answers[name], writing.calculation.setup.print_unit(name), result.digits))
         value = (*symbol, *(("= ",) if symbol else ()), Marked("strong", printed))
         if equation is not None:
-            on_results = any(active.effect.place == "results" for active in writing.calculation.setup.effects)
+            setup = writing.calculation.setup
+            on_results = any(acts_on(setup.model, active.effect) == "results" for active in setup.effects)
             value += (" ", Marked("aside", DEPARTURES[on_results]))
     method = with_source(getattr(result.spec, "method", ""), getattr(result.spec, "source", ""))
     return ResultEntry(name, label_of(result.spec.note, name), equation, value, method)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from typing import Any
 
-from truing.declare.chain import link_of
+from truing.declare.chain import acts_on, link_of
 from truing.declare.fields import Given, InputField
 from truing.evaluate import acting_inputs, taken_values
 from truing.inputs_file.values import halving_in_words
@@ -42,6 +42,7 @@ from truing.units.systems import in_system
 PLACES = {"inputs": "on the inputs", "results": "on the results", "reading": "on the reading"}
 LONGEST_SERIES = 8
 NOT_GIVEN = "not given"
+TAKEN_FROM = "taken from "
 FEW = 6
 """So many inputs at a default of 0 still have rows of their own."""
 
@@ -88,7 +89,7 @@ def _input_row(setup: Setup, name: str, value: Value, more: tuple[Text, ...]) ->
     given = _given_how(setup, name)
     return (
         symbol_cell(field.symbol), label_of(note, name), value.text, value.unit, *more, given,
-        "" if given.startswith("from ") else field.spec.source,
+        "" if given.startswith(TAKEN_FROM) else field.spec.source,
     )  # fmt: skip
 
 
@@ -97,7 +98,7 @@ def _given_how(setup: Setup, name: str) -> str:
     if name in setup.source.stated:
         return "stated"
     link = link_of(setup.model, name)
-    return "default" if link is None else f"from {link.source}"
+    return "default" if link is None else f"{TAKEN_FROM}{link.source}"
 
 
 def _fitted(setup: Setup, name: str) -> Text:
@@ -239,7 +240,8 @@ def _effect_row(active: SwitchedOn, setup: Setup) -> tuple[Text, ...]:
         scatter = (" ± ", Value(*format_difference(sd, unit, 3)), " ", Marked("aside", "(sd)")) if sd else ()
         unknowns.append((unknown.name.replace("_", " ") + " = ", value, *scatter))
     why = with_source(effect.why or effect.looks_like, effect.source)
-    return (effect.name.replace("_", " "), PLACES[effect.place], joined(unknowns, Marked("break", ", ")), why)
+    place = PLACES[acts_on(setup.model, effect)]
+    return (effect.name.replace("_", " "), place, joined(unknowns, Marked("break", ", ")), why)
 
 
 def _changed_inputs(setup: Setup) -> Iterator[Text]:

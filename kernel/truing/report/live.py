@@ -109,7 +109,7 @@ def _sections(calculation: Calculation) -> Iterator[Chapter]:
             names = [name for name in section.names if name in known and name in model.result_fields]
             if section.level == level and names:
                 named.update(names)
-                yield Chapter(section.title, (result_table(calculation, names),))
+                yield Chapter(section.whole_title, (result_table(calculation, names),))
     rest = [name for name in model.result_fields if name in known and name not in named]
     if rest:
         yield Chapter(FURTHER if named else "Results", (result_table(calculation, rest),))

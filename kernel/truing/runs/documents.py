@@ -93,7 +93,12 @@ def _chain(setup: Setup) -> dict[str, Any]:
     ]
     names = [*chain.sources, ""]
     calculations = [
-        {"name": name or chain.last.name, "title": chain.model_of(name).title, "prefix": prefix_of(name)}
+        {
+            "name": name or chain.last.name,
+            "model": chain.model_of(name).name,
+            "title": chain.model_of(name).title,
+            "prefix": prefix_of(name),
+        }
         for name in names
     ]
     return {"chain": {"calculations": calculations, "links": links}}

@@ -198,7 +198,10 @@ def _input(setup: Setup, field: InputField, value: Any, folder: Path | None) -> 
 def _taken(setup: Setup, name: str) -> dict[str, str] | None:
     """Return what an input that is not given is taken from, or None."""
     link = link_of(setup.model, name)
-    return None if link is None else {"from": link.source, "result": link.result}
+    if link is None:
+        return None
+    own_name = {"plugin": link.model} if link.model else {}
+    return {"from": link.source, **own_name, "result": link.result}
 
 
 def _units(setup: Setup, name: str, folder: Path | None) -> list[str]:

@@ -19,7 +19,7 @@ from truing.studies.checks import Z95, Check, Demand, as_number, demands, requir
 from truing.studies.drawings import labelled, lines
 from truing.studies.first_order import FormResult, chance, form, straightened
 from truing.studies.reading import printed, printed_step, read_range, scattering_name, spoken
-from truing.studies.sampling import BATCH, Moments, Tally, goal_checks, sample, scatter_of
+from truing.studies.sampling import BATCH, Design, Moments, Tally, goal_checks, sample_along, scatter_of
 from truing.units import difference_unit, from_si, unit_text
 
 METHODS = ("first_order", "monte_carlo", "form")
@@ -59,30 +59,30 @@ class Reliability:
         if bool(self.over) != bool(self.at):  # here and not when it is made: a file may set one and a plugin the other
             example = 'over = "working_time", at = "0..6000 h"'
             raise UsageError(f"study '{self.name}': over and at go together: {example}")
-        odds = self._answer(bench, bench.setup, bench.answers, 0)
-        curve = self._curve(bench) if self.over else None
-        return replace(odds, curve=curve)
-
-    def _answer(self, bench: Bench, setup: Setup, answers: Mapping[str, Any], stage: int) -> Odds:
-        wanted = demands(setup, answers)
-        if not any(require.result in setup.model.own_result_fields for require in requirements(setup)):
+        design = _design(bench.setup, bench.answers)
+        if not any(require.result in bench.setup.model.own_result_fields for require in requirements(bench.setup)):
             raise UsageError(
-                f"study '{self.name}': {setup.model.name} requires nothing; add Require(result, ...) to it"
+                f"study '{self.name}': {bench.setup.model.name} requires nothing; add Require(result, ...) to it"
             )
-        scatter = scatter_of(setup)
+        stages = 1 + (self.points if self.over else 0)
+        (tally,) = self._drawn(bench, [design], 0.0, 1 / stages)
+        odds = self._answer(bench, design, tally)
+        return replace(odds, curve=self._curve(bench, 1 / stages) if self.over else None)
+
+    def _drawn(self, bench: Bench, designs: Sequence[Design], begin: float, end: float) -> Sequence[Tally | None]:
+        """Draw machines of these designs, where the method asks for it, from one share of the work to another."""
+        if "monte_carlo" not in self.method or not designs:
+            return [None for _ in designs]
+        done = bench.part(self.name, begin, end)
+        return sample_along(designs, draws=self.draws, batch=self.batch, executor=bench.executor, done=done)
+
+    def _answer(self, bench: Bench, design: Design, tally: Tally | None) -> Odds:
+        scatter, wanted, setup = design.scatter, design.wanted, design.scatter.setup
         straight, derivatives = straightened(scatter, wanted)
-        tally = None
-        if "monte_carlo" in self.method:
-            stages = 1 + (self.points if self.over else 0)
-            done = bench.part(self.name, stage / stages, (stage + 1) / stages)
-            tally = sample(
-                scatter, wanted, answers,
-                draws=self.draws, batch=self.batch, executor=bench.executor, done=done,
-            )  # fmt: skip
         still = () if scatter.causes else ("nothing scatters: every tolerance is off, so each probability is 0 or 1",)
         return Odds(
             name=self.name,
-            demands=tuple(wanted),
+            demands=wanted,
             units={demand.result: setup.print_unit(demand.result) for demand in wanted},
             analytic={demand.name: chance(demand, straight[demand.name]) for demand in wanted},
             first_mean={demand.name: straight[demand.name].mean for demand in wanted},
@@ -91,35 +91,41 @@ class Reliability:
             tally=tally,
             remarks=(*_lacking(bench), *derivatives.warnings, *still, *_few_draws(self, wanted)),
             inputs=acting_inputs(setup),
-            nominal={demand.result: answers[demand.result] for demand in wanted},
+            nominal={demand.result: design.answers[demand.result] for demand in wanted},
         )
 
-    def _curve(self, bench: Bench) -> Curve:
+    def _curve(self, bench: Bench, begin: float) -> Curve:
         """Answer at every point of the range, with the same random numbers."""
         over = scattering_name(bench.setup, self.over, self.name)
         axis = read_range(self.at, bench.setup.unit_of(over), self.points)
         quick = replace(self, method=tuple(method for method in self.method if method != "form"), points=len(axis))
-        answers = [quick._at(bench, over, float(value), stage + 1) for stage, value in enumerate(axis)]
+        designs = [_design_at(bench, over, float(value)) for value in axis]
+        possible = [design for design in designs if isinstance(design, Design)]
+        tallies = iter(quick._drawn(bench, possible, begin, 1.0))
+        answers = [
+            design if isinstance(design, str) else quick._answer(bench, design, next(tallies)) for design in designs
+        ]
         along = {of: _along(answers, of) for of in ("probability", "at_least", "analytic")}
         failed = tuple((row, odds) for row, odds in enumerate(answers) if isinstance(odds, str))
         return Curve(over=over, unit=bench.setup.print_unit(over), axis=axis, failed=failed, **along)
 
-    def _at(self, bench: Bench, over: str, value: float, stage: int) -> Odds | str:
-        """Answer at one point, or say why there is no answer."""
-        setup = bench.setup
-        input_field = setup.model.input_fields.get(over)
-        setup = setup.changed(
-            {over: int(value) if input_field is not None and input_field.kind == "integer" else value}
-        )
-        try:
-            answers = answered(setup)
-        except InfeasibleError as error:
-            return str(error)
-        wanted = [name for demand in demands(bench.setup, bench.answers) for name in demand.wanted]
-        lacking = [answers.absent[name] for name in wanted if name in answers.absent]
-        if lacking:
-            return lacking[0]
-        return self._answer(bench, setup, setup.model.read_results(answers.results), stage)
+
+def _design(setup: Setup, answers: Mapping[str, Any]) -> Design:
+    return Design(scatter_of(setup), tuple(demands(setup, answers)), answers)
+
+
+def _design_at(bench: Bench, over: str, value: float) -> Design | str:
+    """Return the machines at one point of a curve, or say why there is no answer."""
+    setup = bench.setup
+    input_field = setup.model.input_fields.get(over)
+    setup = setup.changed({over: int(value) if input_field is not None and input_field.kind == "integer" else value})
+    try:
+        answers = answered(setup)
+    except InfeasibleError as error:
+        return str(error)
+    wanted = [name for demand in demands(bench.setup, bench.answers) for name in demand.wanted]
+    lacking = [answers.absent[name] for name in wanted if name in answers.absent]
+    return lacking[0] if lacking else _design(setup, setup.model.read_results(answers.results))
 
 
 def _lacking(bench: Bench) -> list[str]:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from truing.arrays import Matrix
 from truing.declare.correlations import contradictions, matrix_of, pearson, scatter_fault
 from truing.declare.spreads import FIXED_DRAWS, Distribution, Drawn, Grade, Spread, Stream, with_width
 from truing.errors import UsageError
-from truing.evaluate import Rows, evaluate_rows
+from truing.evaluate import Rows, evaluate_rows, put_together
 from truing.executors import in_order, keepable, stays_here
 from truing.packed import Packed, pack, unpack
 from truing.setup import Setup, SwitchedOn, effect_column
@@ -37,6 +37,8 @@ BLOCK = 2**14
 
 Where a batch is made of whole blocks, a machine has the same numbers whatever the batch; any other is a block itself.
 """
+AT_ONCE = 2**11
+"""So many machines are calculated for all designs along a curve, one design after another, before the next machines."""
 NORMALS_REMEMBERED = 64
 """So many arrays of at most ``BATCH`` values, half a megabyte each."""
 WORDS = 8
@@ -110,15 +112,41 @@ def sample(
     done: Callable[[int, int], None],
 ) -> Tally:
     """Draw machines in batches and count which of them meet each demand; ``answers`` are the nominal results in SI."""
-    carried: Scatter | Packed = scatter if stays_here(executor) else pack(scatter.setup)
-    centres = {name: answers[name] for name in results_needed(scatter.setup, wanted)}
-    run = partial(run_batch, carried, tuple(wanted), centres, block_of(batch))
-    total: Tally | None = None
-    batches = ((start, min(batch, draws - start)) for start in range(0, draws, batch))
-    for tally in in_order(executor, run, batches):
-        total = tally if total is None else merged(total, tally)
-        done(total.draws, draws)
-    assert total is not None  # there is at least one draw
+    design = Design(scatter, tuple(wanted), answers)
+    (tally,) = sample_along([design], draws=draws, batch=batch, executor=executor, done=done)
+    return tally
+
+
+@dataclass(frozen=True)
+class Design:
+    """Machines to draw: what scatters, the demands on them, and the nominal results in SI."""
+
+    scatter: Scatter
+    wanted: tuple[Demand, ...]
+    answers: Mapping[str, Any]
+
+    def carried(self, executor: Executor) -> _Carried:
+        """Return it as it goes to where the batches are calculated."""
+        centres = {name: self.answers[name] for name in results_needed(self.scatter.setup, self.wanted)}
+        return self.scatter if stays_here(executor) else pack(self.scatter.setup), self.wanted, centres
+
+
+def sample_along(
+    designs: Sequence[Design], *, draws: int, batch: int, executor: Executor, done: Callable[[int, int], None]
+) -> list[Tally]:
+    """Draw machines of several designs that are much alike, as those along a curve, and count as in ``sample``.
+
+    The first machines of all designs are calculated, then the next ones, so that a model which remembers what it
+    calculated for a machine is asked for the same one again. Of several designs a batch is one block.
+    """
+    block = block_of(batch)
+    size = block if len(designs) > 1 else batch
+    run = partial(run_batch, tuple(design.carried(executor) for design in designs), block)
+    total: list[Tally] = []
+    batches = ((start, min(size, draws - start)) for start in range(0, draws, size))
+    for tallies in in_order(executor, run, batches):
+        total = list(map(merged, total, tallies)) if total else list(tallies)
+        done(total[0].draws, draws)
     return total
 
 
@@ -142,18 +170,39 @@ def block_of(batch: int) -> int:
     return batch if batch % BLOCK else BLOCK
 
 
-def run_batch(
-    carried: Scatter | Packed, wanted: Sequence[Demand], centres: Mapping[str, Any], block: int, batch: tuple[int, int]
-) -> Tally:
-    """Draw a batch (its first machine and rows), run the model on it; return counts and moments about the centres (SI).
+_Carried: TypeAlias = "tuple[Scatter | Packed, tuple[Demand, ...], Mapping[str, Any]]"
+"""What scatters, the demands, and the centres of moments (SI)."""
+
+
+def run_batch(designs: Sequence[_Carried], block: int, batch: tuple[int, int]) -> tuple[Tally, ...]:
+    """Draw a batch (its first machine and rows) of each design, and run the model on it; return counts and moments.
 
     ``block`` machines share their random generators.
     """
     _keep_freed_memory()
     start, count = batch
-    scatter = _unpacked(carried) if isinstance(carried, Packed) else carried
-    columns = scatter.draw(scatter.setup.seed, start // block, count, block=block)
-    rows = evaluate_rows(scatter.setup, columns, count, wanted=tuple(centres)).complete()
+    scatters = [_unpacked(carried) if isinstance(carried, Packed) else carried for carried, _, _ in designs]
+    columns = [scatter.draw(scatter.setup.seed, start // block, count, block=block) for scatter in scatters]
+    size = count if len(designs) == 1 else AT_ONCE
+    parts: list[list[Rows]] = [[] for _ in designs]
+    order = np.split(np.arange(count), range(size, count, size))
+    for index in order:
+        few = slice(index[0], index[-1] + 1)
+        for scatter, (_, _, centres), drawn, answers in zip(scatters, designs, columns, parts, strict=True):
+            own = {name: values[few] for name, values in drawn.items()}
+            answers.append(evaluate_rows(scatter.setup, own, len(index), wanted=tuple(centres)))
+    return tuple(
+        _tally(_whole(answers, order, tuple(centres), count).complete(), wanted, centres, drawn)
+        for answers, (_, wanted, centres), drawn in zip(parts, designs, columns, strict=True)
+    )
+
+
+def _whole(parts: Sequence[Rows], order: Sequence[NDArray[np.intp]], names: Sequence[str], rows: int) -> Rows:
+    return parts[0] if len(parts) == 1 else put_together(parts, order, names, rows)
+
+
+def _tally(rows: Rows, wanted: Sequence[Demand], centres: Mapping[str, Any], columns: Mapping[str, Any]) -> Tally:
+    count = len(rows)
     return Tally(
         draws=count,
         hits={demand.name: _hits(demand, rows, columns) for demand in wanted},

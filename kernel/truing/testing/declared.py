@@ -85,7 +85,7 @@ def printed_numbers_are_of_results(subject: Subject) -> None:
 
 def sheet_is_in_order(subject: Subject) -> None:
     """No two sections share a title, no result stands on the sheet twice."""
-    titles = [section.title for section in subject.model.sheet]
+    titles = [section.whole_title for section in subject.model.sheet]
     names = [name for section in subject.model.sheet for name in section.names]
     for what, written in (("section", titles), ("result", names)):
         for one in written:

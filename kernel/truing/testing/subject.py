@@ -48,7 +48,7 @@ class Subject:
         name = self.model.name
         origin = self.home or Origin(name, "", "", "", f"entry:{name}")
         name, chain = name if origin.name == name else f"{origin.name}.{name}", chain_of(self.model)
-        parts = {} if chain is None else {**chain.sources, name: chain.last}
+        parts = {} if chain is None else {**chain.calculations, name: chain.last}
         beside = {part: Offer(part, model, origin) for part, model in parts.items()}
         return Offer(name, self.model, origin, beside=beside)
 
