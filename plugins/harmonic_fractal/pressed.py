@@ -115,7 +115,7 @@ def press(heights: Array, spacing: float, modulus: float, hardness: float, loads
         pressure = np.array(done.jac).reshape(shape) / spacing**2
         touching = pressure > 0.0
         gap = float(np.mean(start - heights - done.offset))
-        too_hard = np.count_nonzero(pressure > hardness) / max(np.count_nonzero(touching), 1)
+        too_hard = int(np.sum(pressure > hardness)) / max(int(np.sum(touching)), 1)
         rows.append((load, abs(gap), touching.mean(), too_hard))
     return Pressing(*np.array(rows).T)
 
