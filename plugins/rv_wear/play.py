@@ -6,7 +6,7 @@ discs share the load, and how far the output runs ahead or behind are results an
 
 Range: rigid cranks and bearings that hold all discs at one angle, elastic contacts, every pin round in a fixed place. A
 contact with less than ``SHORT_ARM`` of the longest arm is not followed: its gap is some times wider, as an angle, than
-that at the longest arm.
+that at the longest arm. Where a disc wedges at a pin with a short arm, the angle is found within 0.004 arcmin only.
 """
 
 from dataclasses import dataclass, replace
