@@ -37,7 +37,7 @@ BLOCK = 2**14
 
 Where a batch is made of whole blocks, a machine has the same numbers whatever the batch; any other is a block itself.
 """
-AT_ONCE = 2**11
+AT_ONCE = 2**12
 """So many machines are calculated for all designs along a curve, one design after another, before the next machines."""
 NORMALS_REMEMBERED = 64
 """So many arrays of at most ``BATCH`` values, half a megabyte each."""
