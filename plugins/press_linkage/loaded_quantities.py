@@ -92,6 +92,8 @@ class LoadedPress(DrivenPress):
     permitted_deflection: Float = size(2.5, "mm", "f_perm", "under the rated force in the middle", source=CLASS)
     permitted_slope: Float = size(0.3, "mm/m", "s_perm", "tilt under the rated force at its offset", source=CLASS)
     permitted_guide_force: Float = size(100.0, "kN", "G_perm", "that a pair of guides may carry", source=CLASS)
+    acceptance_goal: Float = given(0.95, "", symbol="R_perm,0", note="share of presses that must keep each limit",
+                                   source="assumed", above=0, below=1)  # fmt: skip
     # The errors of the parts
     platform_arm_deviation: Float = off("mm", "k", "arm of the moving platform, common to both sides")
     side_1: PressSide = part(PressSide, index="1", suffix="1")

@@ -146,7 +146,7 @@ class Band:
         if quantity.unit == "%" and target.unit != "%":
             if not target.nominal:
                 raise UnitError(
-                    f"{self.amount} of '{target.name}' is nothing, because its nominal is 0; write a quantity"
+                    f"{self.amount} of '{target.name}' is nothing, because its nominal is 0; write a quantity, or off"
                 )
             return _positive(quantity.value, self.amount) / 100 * abs(target.nominal)
         if not self.at_radius:
