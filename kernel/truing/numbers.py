@@ -19,6 +19,8 @@ RESULT_DIGITS = 5
 MOST_DECIMALS = 12
 """A probability in per cent has no more: what a double holds."""
 STATED_DIGITS = 10
+ROUNDING = 1e-11
+"""Numbers that are less than this share of others beside them are what is left of a difference of doubles."""
 _NUMBER = re.compile(r"(?P<minus>-?)(?P<digits>\d[\d.]*)(?:e(?P<sign>[+-]?)0*(?P<exponent>\d+))?", re.ASCII)
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -94,12 +96,18 @@ def format_stated(si: Any, unit: str, stated: str) -> tuple[str, str]:
 
 
 def format_ends(values: Any, unit: str) -> tuple[str, str, str]:
-    """Write the least and the largest of numbers in SI, and the unit; empty texts where none is finite."""
+    """Write the least and the largest of numbers in SI, and the unit; empty texts where none is finite.
+
+    Beside an end of the other sign one that is smaller by ``ROUNDING`` is the rounding of a difference, and 0.
+    """
     numbers = np.asarray(values, dtype=float)
     finite = numbers[np.isfinite(numbers)]
     if not finite.size:
         return "", "", unit_text(unit)
-    return format_value(finite.min(), unit)[0], *format_value(finite.max(), unit)
+    low, high = finite.min(), finite.max()
+    if low < 0.0 < high:
+        low, high = (0.0 if abs(end) < ROUNDING * max(-low, high) else end for end in (low, high))
+    return format_value(low, unit)[0], *format_value(high, unit)
 
 
 def format_difference(si: float, unit: str, digits: int = RESULT_DIGITS) -> tuple[str, str]:

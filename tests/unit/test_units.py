@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from truing import units
 from truing.errors import UnitError
-from truing.numbers import format_difference, format_number, format_value, pretty, with_unit
+from truing.numbers import format_difference, format_ends, format_number, format_value, pretty, with_unit
 from truing.units import names
 from truing.units.meaning import _suggestions
 from truing.units.sizes import SIZES
@@ -457,3 +457,17 @@ def test_only_numbers_are_made_pretty_and_degrees_follow_closely() -> None:
     printed |= {text: text for text in ("0.7381", "–", "-abc", "1e5 bolts", "e-05")}
     assert {text: pretty(text) for text in printed} == printed
     assert [with_unit("12", unit) for unit in ("°", "°C", "")] == ["12°", "12 °C", "12"]
+
+
+@pytest.mark.parametrize(
+    ("values", "ends"),
+    [
+        ([-124.15e-6, 4.1e-17], ("-0.12415", "0")),
+        ([-4.1e-17, 124.15e-6], ("0", "0.12415")),
+        ([-1e-9, 1e-3], ("-1e-06", "1")),  # seen in full
+        ([1e-15, 1e3], ("1e-12", "1000000")),  # of one sign: a spectrum spans as much
+        ([np.nan, 2e-3], ("2", "2")),
+    ],
+)
+def test_what_is_left_of_a_difference_is_written_as_zero_beside_the_other_sign(values, ends) -> None:
+    assert format_ends(np.array(values), "mm")[:2] == ends
