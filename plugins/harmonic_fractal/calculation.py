@@ -7,7 +7,7 @@ import numpy as np
 from harmonic_fractal import contact as rough_contact
 from harmonic_fractal.mesh import DriveMesh, line_stiffness, load_of_largest, mesh_of, mesh_torsion, normal_stiffness
 from harmonic_fractal.micro import LEAST_DIMENSION, MOST_DIMENSION, elastic_sum
-from harmonic_fractal.quantities import RACES, ROW, SIZES, Drive, Stiffness
+from harmonic_fractal.quantities import CLOSING, SIZES, Drive, Stiffness
 from harmonic_fractal.structure import kept_share, structure_function
 from truing import Float, column, feasible
 
@@ -205,7 +205,7 @@ def ball_torsion(drive: Drive) -> Float:
     """
     steel = 0.5 * drive.modulus_factor * drive.flexspline.youngs_modulus / (1.0 - drive.flexspline.poisson_ratio**2)
     loaded = np.maximum(drive.balls, 1.0) * drive.engaged_pairs / drive.flexspline_teeth
-    closing = float(f"{RACES * ROW:.6g}") * np.power(drive.wave_torque / (steel * loaded), 2.0 / 3.0)
+    closing = CLOSING * np.power(drive.wave_torque / (steel * loaded), 2.0 / 3.0)
     lever = np.power(np.tan(drive.pressure_angle) / drive.pitch_radius, 5.0 / 3.0)
     return np.where(np.asarray(drive.balls) > 0.0, closing * lever / np.cbrt(drive.ball_diameter), 0.0)
 

@@ -55,7 +55,7 @@ class Pressing:
         return np.asarray(self.between * np.diff(np.log(self.load)) / -np.diff(self.gap))
 
 
-def flanks_of(drive: Drive) -> list[Flank]:
+def measured_flanks(drive: Drive) -> list[Flank]:
     """Return the measured flanks."""
     return [flank for flank in (drive.surface, drive.mating_surface) if flank is not None]
 
@@ -67,8 +67,8 @@ def heights_of(drive: Drive) -> tuple[Array, float] | None:
     60. Of two maps the part that both have; holes are filled along the lines. None where no patch was measured. Raises
     TruingError where spacings differ.
     """
-    mates = [flank is drive.mating_surface for flank in flanks_of(drive)]
-    patches = [flank.surface for flank in flanks_of(drive)]
+    mates = [flank is drive.mating_surface for flank in measured_flanks(drive)]
+    patches = [flank.surface for flank in measured_flanks(drive)]
     if not patches or any(patch.is_profile for patch in patches):
         return None
     spacings = [spacing for patch in patches for spacing in (patch.spacing_x, patch.spacing_y)]
@@ -170,10 +170,10 @@ class PressedFlanks:
     def run(self, bench: Bench) -> "Compared":
         """Calculate every load, largest gap first."""
         drive: Drive = bench.inputs
-        if not flanks_of(drive):
+        if not measured_flanks(drive):
             return Compared(self.name, reason=NO_FLANK)
         rough, words = compared_with(drive)
-        alone = [float(np.nanstd(flank.surface.heights)) for flank in flanks_of(drive)]
+        alone = [float(np.nanstd(flank.surface.heights)) for flank in measured_flanks(drive)]
         load, height = float(drive.pair_load), float(np.hypot.reduce(alone))
         ratio = float(_fractal(np.array(load), rough, drive)) * MEAN_PLANE * height / load
         known = Compared(self.name, words=words, load=load, by_height=ratio, apart=height)

@@ -151,6 +151,8 @@ N and mm (Palmgren; Harris, Rolling Bearing Analysis). Between flat plates it wo
 ROW = 1.2885
 """Sum of w^(5/3) over many balls with shares w by the square of the cosine, by their number to the power -2/3:
 2^(5/3) Gamma(13/6)/(sqrt(pi) Gamma(8/3))."""
+CLOSING = round(RACES * ROW, 5)
+"""Both together, to the digits that the sheet prints."""
 SHARES = "load shares by the square of the cosine along two opposite arcs"
 
 
@@ -311,7 +313,7 @@ class Stiffness:
     ball_torsion: Float = found(
         "urad", symbol="theta_b", note="torsion at wave_torque by the balls of the wave generator alone, calculated",
         source="Hertz, by Palmgren's constant; Castigliano over the balls under the engaged arcs",
-        formula=f"cases({RACES * ROW:.6g} * wave_torque**(2/3) * (tan(pressure_angle) / pitch_radius)**(5/3)"
+        formula=f"cases({CLOSING:.6g} * wave_torque**(2/3) * (tan(pressure_angle) / pitch_radius)**(5/3)"
         " / (ball_diameter**(1/3) * (modulus_factor * youngs_modulus_flexspline"
         " / (2 * (1 - poisson_ratio_flexspline**2)) * max(balls, 1) * engaged_pairs / flexspline_teeth)**(2/3)),"
         " balls > 0, 0)",

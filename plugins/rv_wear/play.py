@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_geometry.cycloid import pin_distance
 from rv_wear.discs import worn_mesh
 from rv_wear.forces import Loads, shared, start_scale
 from rv_wear.geometry import Mesh, Teeth, mesh_of, relative_arm, teeth_of
@@ -256,7 +257,7 @@ def stops_of(reducer: Reducer, crank: Float) -> Stops:
     first = pitch * (np.ceil(ahead) - ahead)
     phase = first[:, :, None] + pitch * np.arange(_following(short_width, count))[:, None]
     cosine = np.cos(phase)
-    sine, distance = np.sqrt(1.0 - cosine**2), np.sqrt(1.0 + short_width**2 - 2.0 * short_width * cosine)
+    sine, distance = np.sqrt(1.0 - cosine**2), pin_distance(short_width, phase)
     sine = np.where(sine >= SHORT_ARM * distance, sine, np.nan)
     lean = (cosine - short_width) / sine
     way = (thinner * distance - outward * (1.0 - short_width * cosine)) / sine - reducer.eccentricity_error * lean
@@ -272,7 +273,7 @@ def stops_of(reducer: Reducer, crank: Float) -> Stops:
 def _following(short_width: Float, count: int) -> int:
     """How many pins of one side may stop a disc; behind them the arm is short for every reducer."""
     angle = 2.0 * np.pi * np.arange(count // 2)[:, None] / count
-    distance = np.sqrt(1.0 + np.square(short_width) - 2.0 * np.atleast_1d(short_width) * np.cos(angle))
+    distance = pin_distance(np.atleast_1d(short_width), angle)
     return int(np.flatnonzero((np.sin(angle) >= SHORT_ARM * distance).any(axis=1))[-1]) + 1
 
 

@@ -366,7 +366,7 @@ class Remembered(Generic[Answer]):
             while sum(len(own) for own, _ in self._groups.values()) > MOST_REMEMBERED:
                 oldest, (own, _) = self._groups.popitem(last=False)
                 for key in own:
-                    if self._group_of[key][0] == oldest:
+                    if self._group_of.get(key, (NEW, 0))[0] == oldest:
                         del self._group_of[key]
 
     def forget(self) -> None:

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.special import lambertw
 
-from rv_wear import discs, geometry
+from rv_wear import discs, geometry, wear
 from rv_wear.calculation import rv_wear
 from rv_wear.forces import Loads, shared, start_scale
 from rv_wear.geometry import Choices, Mesh, Teeth, mesh_of, teeth_of
@@ -269,3 +269,29 @@ def test_a_step_is_not_too_deep_for_a_wear_that_never_reaches_it() -> None:
     short = replace(PAPER, working_time=np.array([0.0, 36.0]))
     deep = worn(replace(short, reconstruction_depth=5e-6))
     assert deep["max_wear"] == pytest.approx(worn(short)["max_wear"], rel=1e-12)
+
+
+def test_meshes_that_two_threads_calculated_at_once_are_forgotten_one_group_after_the_other(monkeypatch) -> None:
+    """A thread asks for A while another asks for A and B; then B is asked for again, and others drive out both."""
+    monkeypatch.setattr(wear, "MOST_REMEMBERED", 3)
+    loads = {"A": 1000.0, "B": 1100.0, "C": 1200.0, "D": 1300.0}
+
+    def meshes(names: str) -> geometry.Mesh:
+        return geometry.many(replace(MESH, torque=np.array([loads[name] for name in names])))
+
+    calls: list[int] = []
+
+    def calculated(mesh: geometry.Mesh) -> int:
+        calls.append(len(np.atleast_1d(mesh.torque)))
+        if len(calls) == 1:
+            asked("AB")
+        return len(calls)
+
+    memory = wear.Remembered(calculated)
+
+    def asked(names: str) -> None:
+        assert sum(len(places) for places, _, _ in memory.of(meshes(names), np.arange(len(names)))) == len(names)
+
+    for names in ("A", "B", "C", "D", "AB"):
+        asked(names)
+    assert calls == [1, 2, 1, 1, 2]  # both were forgotten and are calculated again

@@ -141,12 +141,10 @@ def _place_of(chain: _Chain, link: Link) -> Place:
 
 def _read_names(chain: _Chain, document: InputsDocument) -> None:
     """Note what each source is that goes by a name of its own: ``plugin`` in the braces or under [from.NAME]."""
-    sections = [document.data.get("inputs"), *_sections(document.data.get(FROM))]
-    links = [raw for section in sections if isinstance(section, dict) for raw in section.values() if is_taken(raw)]
+    own, sources = _tables({"inputs": document.data.get("inputs")}), _tables(document.data.get(FROM))
+    links = [raw for table in (*own.values(), *sources.values()) for raw in table.values() if is_taken(raw)]
     stated = [(link[FROM], link[PLUGIN]) for link in links if PLUGIN in link]
-    named = document.data.get(FROM)
-    for word, section in named.items() if isinstance(named, dict) else ():
-        stated += [(word, section[PLUGIN])] if isinstance(section, dict) and PLUGIN in section else []
+    stated += [(word, table[PLUGIN]) for word, table in sources.items() if PLUGIN in table]
     for word, model in stated:
         if not (isinstance(word, str) and isinstance(model, str)) or model == word:
             continue
@@ -155,8 +153,9 @@ def _read_names(chain: _Chain, document: InputsDocument) -> None:
             chain.fault(sentence, document.place((FROM, word)))
 
 
-def _sections(content: Any) -> list[Any]:
-    return list(content.values()) if isinstance(content, dict) else []
+def _tables(content: Any) -> dict[str, dict[str, Any]]:
+    """Return what is a table in a table; faults of the rest are told where it is read."""
+    return {name: each for name, each in content.items() if isinstance(each, dict)} if isinstance(content, dict) else {}
 
 
 def _read_inputs(chain: _Chain, document: InputsDocument, owner: str, folder: Path) -> None:

@@ -1399,10 +1399,7 @@ def _of_input(setup: Setup, vary: Vary, study: Optimise) -> Variable:
 
 def _step(input_field: InputField, text: str, what: str) -> float:
     """Read a step in SI. Raises UsageError for a text that is none, and for one that no value or no whole one meets."""
-    try:
-        step = read_quantity(text, difference_unit(input_field.unit))
-    except UnitError as error:
-        raise UsageError(f"{what}: {error}") from None
+    step = _stated(text, difference_unit(input_field.unit), what)
     if not step > 0:
         raise UsageError(f"{what}: step = {text} must lie above 0")
     if input_field.kind in {"whole", "integer"} and not step.is_integer():
@@ -1410,12 +1407,16 @@ def _step(input_field: InputField, text: str, what: str) -> float:
     return step
 
 
-def _end(input_field: InputField, text: str, what: str) -> float:
-    """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
+def _stated(text: str, unit: str, what: str) -> float:
     try:
-        value = read_quantity(text, input_field.unit)
+        return read_quantity(text, unit)
     except UnitError as error:
         raise UsageError(f"{what}: {error}") from None
+
+
+def _end(input_field: InputField, text: str, what: str) -> float:
+    """Read one end of a range in SI. Raises UsageError for a text that is none, or beyond the bounds of the input."""
+    value = _stated(text, input_field.unit, what)
     broken = "" if input_field.kind == "whole" else broken_bound(input_field, value)
     if broken:
         raise UsageError(f"{what}: {broken}")
